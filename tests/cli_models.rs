@@ -228,7 +228,7 @@ fn what_of_a_model_cannot_be_read_is_told() {
         (&["new", "dir.obj"], "dir.obj: is a folder, not a model (name the model in it)", false),
         (&["new", "flat.obj", "./flat.obj"], "./flat.obj: is named twice (name it once", false),
         (&["new", "flatt.glb"], "flatt.glb: there is no such file (did you mean flat.obj?)", false),
-        (&["new", "cats.obj"], "cats.obj: there is no such file (put it there, or mend the name)", false),
+        (&["new", "notez.obj"], "notez.obj: there is no such file (put it there, or mend the name)", false),
         (&["new", "notes.md"], "a model (.obj, .glb, .gltf) or a clip (falls/%04d.jpg, a folder of numbered", false),
     ] {
         let (_, messages) = plica(folder.path(), args, succeeds);

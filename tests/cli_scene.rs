@@ -296,7 +296,7 @@ fn check_lists_every_problem() {
     let broken = scene.replace("\"zones\"", "\"zonse\"");
     std::fs::write(folder.path().join("a.plica.json"), broken).unwrap();
     let ran = plica(folder.path(), &["check", "a.plica.json"]);
-    assert_eq!(ran.out, "layers.0.zonse: unknown field \"zonse\" (did you mean \"zones\"?)\n");
+    assert_eq!(ran.out, "layers.face.zonse: unknown field \"zonse\" (did you mean \"zones\"?)\n");
     assert_eq!(plica(folder.path(), &["check", "none.plica.json"]).status, 1);
 }
 

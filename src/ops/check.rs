@@ -10,7 +10,7 @@ use crate::base::problem::{Problem, Severity};
 use crate::files::{self, materials::Cache};
 use crate::layers::parts::materials::Materials;
 use crate::render;
-use crate::scene::{Document, Scene, address};
+use crate::scene::{Document, Scene, address, named};
 
 /// Find every problem in a scene; warnings alone fail too, unless --lenient is given
 #[derive(clap::Args)]
@@ -36,7 +36,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let errors = problems.iter().filter(|problem| problem.severity == Severity::Error).count();
     if args.json {
         let problems = match &document {
-            Some(document) => address::named(document.json(), problems.clone()),
+            Some(document) => named::problems(document.json(), problems.clone()),
             None => problems.clone(),
         };
         let list = serde_json::to_value(&problems).map_err(|e| Error::at("the list of problems", e))?;

@@ -15,7 +15,7 @@ use crate::files::draft::DraftFile;
 use crate::files::outputs::{self, Kind};
 use crate::files::write;
 use crate::render;
-use crate::scene::{Document, Scene, field};
+use crate::scene::{Document, Scene, named};
 
 /// Plot the jump vectors, or write them as a table
 #[derive(clap::Args)]
@@ -108,13 +108,13 @@ fn only_zone(document: &Document, name: &str) -> Result<Scene> {
     let mut found = 0;
     let mut json = document.json().clone();
     for layer in json.get_mut("layers").and_then(Value::as_array_mut).into_iter().flatten() {
-        let own = field::name_of(Some(layer)).unwrap_or_default();
+        let own = named::name_of(Some(layer)).unwrap_or_default();
         let lists = layer.as_object_mut().into_iter().flat_map(|fields| fields.values_mut());
         for list in lists.filter_map(Value::as_array_mut) {
-            let all: Option<Vec<String>> = list.iter().map(|item| field::name_of(Some(item))).collect();
+            let all: Option<Vec<String>> = list.iter().map(|item| named::name_of(Some(item))).collect();
             names.extend(all.into_iter().flatten());
-            list.retain(|item| field::name_of(Some(item)).is_none_or(|zone| called(&own, &zone)));
-            found += list.iter().filter(|item| field::name_of(Some(item)).is_some()).count();
+            list.retain(|item| named::name_of(Some(item)).is_none_or(|zone| called(&own, &zone)));
+            found += list.iter().filter(|item| named::name_of(Some(item)).is_some()).count();
         }
     }
     match found {

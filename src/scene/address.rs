@@ -5,10 +5,11 @@
 use serde_json::Value;
 
 use super::Document;
-use super::field::{self, name_of};
-use super::schema::{Body, Place, Shape};
+use super::field;
+use super::named::{self, name_of};
+use super::schema::{Body, Place};
 use crate::base::error::{Error, Result};
-use crate::base::pointer::{self, Pointer, spelled};
+use crate::base::pointer::{self, Pointer};
 use crate::base::problem::{Problem, nearest, quoted};
 
 /// The JSON pointer of an address.
@@ -73,59 +74,17 @@ fn spread(
 
 /// The address of a JSON pointer, with names where there are any. A pointer that leads nowhere is returned as it is.
 pub fn address(document: &Document, pointer: &str) -> String {
-    address_in(document.json(), pointer)
-}
-
-fn address_in(json: &Value, pointer: &str) -> String {
-    let mut place = Place::root(json);
-    let mut address = String::new();
-    for token in Pointer(pointer).tokens() {
-        let Some(below) = place.step(&token) else { return pointer.to_owned() };
-        address = self::below(&address, (place.shape, place.shape.body()), &token, below);
-        place = below;
-    }
-    address
+    named::address(document.json(), pointer)
 }
 
 /// The address of a JSON pointer, even if only its beginning leads anywhere: the rest is then written token by token.
 pub fn told(document: &Document, pointer: &str) -> String {
-    told_in(document.json(), pointer)
-}
-
-fn told_in(json: &Value, pointer: &str) -> String {
-    let tokens: Vec<String> = Pointer(pointer).tokens().collect();
-    let known = (0..=tokens.len())
-        .rev()
-        .map(|n| (n, tokens[..n].iter().fold(String::new(), |at, token| Pointer(&at).join(token))));
-    let there =
-        known.map(|(n, at)| (n, address_in(json, &at))).find(|(n, address)| *n == 0 || !address.starts_with('/'));
-    let (n, address) = there.unwrap_or_default();
-    let rest = tokens[n..].iter().map(|token| spelled(token, false));
-    std::iter::once(address).filter(|address| !address.is_empty()).chain(rest).collect::<Vec<_>>().join(".")
+    named::told(document.json(), pointer)
 }
 
 /// A problem with the address of its place, for people.
 pub fn of_problem(document: &Document, problem: &Problem) -> Problem {
     Problem { path: told(document, &problem.path), address: None, ..problem.clone() }
-}
-
-/// Problems with their addresses in a document that may have errors, as JSON.
-pub fn named(json: &Value, mut problems: Vec<Problem>) -> Vec<Problem> {
-    for problem in problems.iter_mut().filter(|problem| problem.path.starts_with('/')) {
-        problem.address = Some(told_in(json, &problem.path));
-    }
-    problems
-}
-
-/// The address of `below`, which is `token` below the place with that address and shape.
-pub fn below(address: &str, (shape, body): (Shape, Body), token: &str, below: Place) -> String {
-    let step = match body {
-        Body::List(..) => name_of(below.value).map(|name| spelled(&name, true)),
-        Body::Numbers(_) | Body::Row(_) => pointer::index(token).and_then(|i| shape.column(i)).map(str::to_owned),
-        _ => None,
-    };
-    let step = step.unwrap_or_else(|| spelled(token, false));
-    if address.is_empty() { step } else { format!("{address}.{step}") }
 }
 
 /// One step of an address.

@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 
 use super::edit::Edit;
 use super::schema::{Body, Place, Shape};
-use super::{Document, FRAME, field, shape};
+use super::{Document, FRAME, field, named, shape};
 use crate::base::pointer::{self, Pointer};
 use crate::layers::KINDS;
 use crate::layers::parts::materials::List;
@@ -290,7 +290,7 @@ pub(super) fn variant_of(place: Place<'_>) -> &str {
 }
 
 fn unique(name: &str, items: &[Value]) -> String {
-    unique_name(name, |name| items.iter().any(|item| field::name_of(Some(item)).as_deref() == Some(name)))
+    unique_name(name, |name| items.iter().any(|item| named::name_of(Some(item)).as_deref() == Some(name)))
 }
 
 /// `name`, or the first of `name 2`, `name 3` … that is not taken; a number at its end is counted up.

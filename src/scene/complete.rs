@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::field::Kind;
-use super::{Document, address, field};
+use super::{Document, address, field, named};
 use crate::base::pointer::Pointer;
 
 /// The paths of the scene that continue `typed` by one name.
@@ -37,7 +37,7 @@ pub fn values(document: &Document, typed: &str) -> Vec<String> {
         Some(Kind::Choice(words)) => words.into_iter().map(|word| word.name.to_owned()).collect(),
         Some(Kind::Reference(list)) => match document.json().get(list) {
             Some(Value::Object(named)) => named.keys().cloned().collect(),
-            Some(Value::Array(items)) => items.iter().filter_map(|item| field::name_of(Some(item))).collect(),
+            Some(Value::Array(items)) => items.iter().filter_map(|item| named::name_of(Some(item))).collect(),
             _ => Vec::new(),
         },
         Some(Kind::Bool) => vec!["true".into(), "false".into()],

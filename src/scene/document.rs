@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde_json::Value;
 
 use super::check::Rules;
-use super::{Scene, address, check, json, migrate};
+use super::{Scene, check, json, migrate, named};
 use crate::base::budget::Budget;
 use crate::base::change::Change;
 use crate::base::problem::{Problem, Severity};
@@ -45,7 +45,7 @@ impl Document {
 
     /// The same under other rules.
     pub fn from_json_under(json: Value, rules: Rules) -> Result<Document, Vec<Problem>> {
-        let read = check::read(&json, &rules).map_err(|problems| address::named(&json, problems))?;
+        let read = check::read(&json, &rules).map_err(|problems| named::problems(&json, problems))?;
         Ok(Document { json: Arc::new(json), read, rules })
     }
 
@@ -85,7 +85,7 @@ impl Document {
         let _share = needed.map_err(|short| vec![short.problem("")])?;
         let errors = |mut problems: Vec<Problem>| {
             problems.retain(|problem| problem.severity == Severity::Error);
-            address::named(&json, problems)
+            named::problems(&json, problems)
         };
         let read = check::reread(&json, &change, &self.read, &self.rules).map_err(errors)?;
         if json.get("plica") != self.json.get("plica") {

@@ -6,6 +6,7 @@ use std::sync::LazyLock;
 use serde_json::{Map, Value, json};
 
 use super::json_schema::range_text;
+use super::named::name_of;
 use super::schema::{Body, Place, Shape};
 use super::{Document, FRAME};
 use crate::base::pointer::{self, Pointer};
@@ -288,11 +289,6 @@ fn column(parent: Place, token: &str) -> Option<&'static str> {
 /// How many items the list at a place has.
 pub fn count(place: Place) -> usize {
     place.value.and_then(Value::as_array).map_or(0, Vec::len)
-}
-
-/// The name of an item of a list, if it has one.
-pub fn name_of(value: Option<&Value>) -> Option<String> {
-    Some(value?.as_object()?.get("name")?.as_str()?.to_owned())
 }
 
 impl Field {

@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 use super::build::{Fresh, camera_for, unique_name, variant_of, write};
 use super::edit::Edit;
 use super::schema::{Body, Place};
-use super::{Document, field, shape};
+use super::{Document, named, shape};
 use crate::base::pointer::Pointer;
 use crate::base::problem::Problem;
 use crate::layers::starts::Starts;
@@ -84,9 +84,9 @@ impl Edit {
 
 /// The items with names that differ from those in `old` and from each other.
 fn named_apart(old: &[Value], mut items: Vec<Value>) -> Vec<Value> {
-    let mut taken: HashSet<String> = old.iter().filter_map(|item| field::name_of(Some(item))).collect();
+    let mut taken: HashSet<String> = old.iter().filter_map(|item| named::name_of(Some(item))).collect();
     for item in &mut items {
-        if let Some(name) = field::name_of(Some(item)) {
+        if let Some(name) = named::name_of(Some(item)) {
             let name = unique_name(&name, |name| taken.contains(name));
             item["name"] = name.as_str().into();
             taken.insert(name);

@@ -4,8 +4,8 @@
 
 use serde_json::{Map, Value};
 
-use super::field::name_of;
 use super::json;
+use super::named::name_of;
 use crate::base::change::same_ends;
 use crate::base::pointer::Pointer;
 

@@ -19,6 +19,7 @@ pub mod merge;
 pub mod migrate;
 mod model;
 mod muted;
+pub mod named;
 pub mod presets;
 mod references;
 pub mod schema;

@@ -5,8 +5,8 @@ use json_patch::PatchOperation;
 use serde_json::Value;
 
 use super::edit::Edit;
-use super::field::name_of;
 use super::merge::Conflict;
+use super::named::name_of;
 use super::schema::{Body, Place, Shape};
 use crate::base::number;
 use crate::base::pointer::{self, Pointer};

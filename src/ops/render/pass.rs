@@ -10,7 +10,7 @@ use crate::export::passes::Files;
 use crate::files::outputs;
 use crate::layers::parts::pass::COLOR;
 use crate::ops::Context;
-use crate::ops::opened::Unloaded;
+use crate::ops::opened::{Opened, Unloaded};
 use crate::render::passes::{Asked, view, view_over};
 use crate::render::{self, Synth, cpu};
 
@@ -46,13 +46,7 @@ pub fn run(args: &Args, context: &mut Context) -> Result<()> {
     let each_way = if *asked.pass == COLOR { args.samples } else { 1 };
     let band = size.0 * size.1;
     let _share = opened.materials.budget.take(2 * frame_bytes(size, size, each_way as usize, band), "frames")?;
-    // A PNG of lines shows the frame beneath.
-    let painted = *asked.pass == COLOR || !files.are_numbers();
-    let samples = match each_way {
-        1 if !painted => vec![opened.unpainted()?],
-        1 => vec![opened.synth()?],
-        _ => opened.samples(each_way)?,
-    };
+    let samples = made(&opened, each_way, *asked.pass != COLOR && files.are_numbers())?;
     let strokes = samples.first().map_or(0, |synth| synth.stroke_bytes(each_way));
     let _strokes = opened.materials.budget.take(strokes, "frames")?;
     let samples: Vec<Synth> = samples.iter().map(|synth| asked.only(synth)).collect();
@@ -75,6 +69,15 @@ pub fn run(args: &Args, context: &mut Context) -> Result<()> {
     };
     context.done(&what, outputs::size(files.paths()), begun);
     Ok(())
+}
+
+/// What the pass is made from. A PNG of lines shows the frame beneath them, numbers alone need no more than where things are.
+fn made(opened: &Opened, each_way: u32, only_numbers: bool) -> Result<Vec<Synth>> {
+    match each_way {
+        1 if only_numbers => opened.unpainted().map(|synth| vec![synth]),
+        1 => opened.synth().map(|synth| vec![synth]),
+        _ => opened.samples(each_way),
+    }
 }
 
 /// Why more samples change nothing, where they do not.

@@ -23,7 +23,7 @@ use crate::preview::wire::message::FromEditor;
 use crate::render::gpu::{Uploaded, Uploader};
 use crate::render::shown::Shown;
 use crate::render::{self, Synth};
-use crate::scene::{Scene, address};
+use crate::scene::{Scene, named};
 
 /// How long after its beginning, and how often from then on, progress is told.
 const BETWEEN: Duration = Duration::from_millis(500);
@@ -245,7 +245,7 @@ fn synthesise(
 fn named(scene: &Scene, problems: Vec<Problem>) -> Vec<Problem> {
     let json = if problems.is_empty() { None } else { serde_json::to_value(scene).ok() };
     match json {
-        Some(json) => address::named(&json, problems),
+        Some(json) => named::problems(&json, problems),
         None => problems,
     }
 }

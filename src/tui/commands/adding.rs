@@ -38,54 +38,18 @@ fn add(state: &mut State, call: &Call) -> Done {
 /// file may come later, and then has no layer. What the scene may not read where it is is copied beside it.
 fn add_file(state: &mut State, path: &str) -> Done {
     let place = beside(state, path);
-    let (list, options) = (sources::list_of(&place), state.scene.options());
-    let outside = |file: &Path| paths::folder_beside(state.scene.path(), file).filter(|_| !options.allow_outside);
-    let (mut notes, mut copies, mut path) = (Vec::new(), None, path.to_owned());
-    let start = Start::within(state.document());
-    let (start, is_there) = match list {
-        List::Clips => {
-            let found = clips::find(&place).map_err(refused)?;
-            let folder = if place.is_dir() { path.trim_end_matches('/') } else { folder_of(&path) };
-            let last = Some(name_of(folder)).filter(|last| !last.is_empty()).unwrap_or("clip");
-            let name = clips::called(&found.name, last).to_owned();
-            path = if folder.is_empty() { found.name.clone() } else { format!("{folder}/{}", found.name) };
-            if let Some(folder) = outside(&found.folder.join(&found.name)) {
-                let (copy, files) = new::clip_copies(&found, &new::clip_called(&place));
-                path = copy.to_string_lossy().into_owned();
-                copies = Some((folder, files));
-            }
-            // A video tells nothing before it is decoded.
-            let size =
-                found.files.first().and_then(|file| picture::size(&found.folder.join(file), &options.limits).ok());
-            let frames = found.files.len();
-            let known = size.map(|size_px| Known { size_px, frames, is_still: false });
-            (start.clip(&name, &path, found.first, known), found.folder.join(&found.files[0]).exists())
+    let list = sources::list_of(&place);
+    let source = (place.as_path(), path);
+    let found = match list {
+        List::Clips => clip(state, source)?,
+        List::Meshes if place.exists() => model(state, source)?,
+        List::Images if files_of(&place).exists() => picture(state, source)?,
+        List::Meshes => {
+            Found::later(Start::within(state.document()).mesh(stem(path), path, None, Looks::default()), path)
         }
-        List::Meshes if place.exists() => {
-            let model = models::read(&place, options).map_err(refused)?;
-            let beside_scene = Path::new(&path).parent().unwrap_or(Path::new("")).to_owned();
-            let copied = bring(&place, outside(&place), model.beside, &mut path)?;
-            let folder = if copied.is_some() { PathBuf::new() } else { beside_scene };
-            let picture = model.picture.map(|picture| folder.join(picture).to_string_lossy().into_owned());
-            let called = picture.as_deref().map(|picture| new::called(Path::new(picture)));
-            (copies, notes) = (copied, model.notes);
-            let looks = Looks {
-                picture: called.as_deref().zip(picture.as_deref()),
-                color: model.color.as_deref(),
-                both_sides: model.both_sides,
-            };
-            (start.mesh(stem(&path), &path, Some(model.mesh), looks), true)
-        }
-        List::Images if files_of(&place).exists() => {
-            let found = sources::picture(&place, &options.limits).map_err(refused)?;
-            let size = (found.picture.width(), found.picture.height());
-            copies = bring(&place, outside(&place), Vec::new(), &mut path)?;
-            notes = found.notes;
-            (start.picture(stem(&path), &path, size), true)
-        }
-        List::Meshes => (start.mesh(stem(&path), &path, None, Looks::default()), false),
-        _ => (start.picture(stem(&path), &path, (0, 0)), false),
+        _ => Found::later(Start::within(state.document()).picture(stem(path), path, (0, 0)), path),
     };
+    let Found { start, is_there, path, mut notes, copies } = found;
     let own = format!("/{}", list.words().0);
     let in_list = target(state).is_ok_and(|at| Pointer(&at).is_within(&own));
     let start = if is_there && !in_list { start } else { start.without_layers() };
@@ -104,6 +68,70 @@ fn add_file(state: &mut State, path: &str) -> Done {
     go_to(state, pointer);
     tell_added(state, list, (&places, &path), &notes);
     Ok(())
+}
+
+/// What a file brings into the scene.
+struct Found {
+    start: Start,
+    /// Whether the file is there.
+    is_there: bool,
+    /// How the scene names it.
+    path: String,
+    notes: Vec<String>,
+    copies: Option<(PathBuf, new::Copies)>,
+}
+
+impl Found {
+    /// What is named before its file is there.
+    fn later(start: Start, path: &str) -> Found {
+        Found { start, is_there: false, path: path.to_owned(), notes: Vec::new(), copies: None }
+    }
+}
+
+/// The folder of the scene, if a file has to be copied there.
+fn outside(state: &State, file: &Path) -> Option<PathBuf> {
+    paths::folder_beside(state.scene.path(), file).filter(|_| !state.scene.options().allow_outside)
+}
+
+fn clip(state: &State, (place, path): (&Path, &str)) -> Result<Found, String> {
+    let found = clips::find(place).map_err(refused)?;
+    let folder = if place.is_dir() { path.trim_end_matches('/') } else { folder_of(path) };
+    let last = Some(name_of(folder)).filter(|last| !last.is_empty()).unwrap_or("clip");
+    let mut path = if folder.is_empty() { found.name.clone() } else { format!("{folder}/{}", found.name) };
+    let copies = outside(state, &found.folder.join(&found.name)).map(|scene| {
+        let (copy, files) = new::clip_copies(&found, &new::clip_called(place));
+        path = copy.to_string_lossy().into_owned();
+        (scene, files)
+    });
+    let first = found.files.first().map(|file| found.folder.join(file));
+    // A video tells nothing before it is decoded.
+    let size = first.as_ref().and_then(|first| picture::size(first, &state.scene.options().limits).ok());
+    let known = size.map(|size_px| Known { size_px, frames: found.files.len(), is_still: false });
+    let name = clips::called(&found.name, last);
+    let start = Start::within(state.document()).clip(name, &path, found.first, known);
+    Ok(Found { start, is_there: first.is_some_and(|first| first.exists()), path, notes: Vec::new(), copies })
+}
+
+fn model(state: &State, (place, path): (&Path, &str)) -> Result<Found, String> {
+    let models::Model { mesh, picture, color, both_sides, beside, notes } =
+        models::read(place, state.scene.options()).map_err(refused)?;
+    let mut named = path.to_owned();
+    let copies = bring(place, outside(state, place), beside, &mut named)?;
+    let picture = picture.map(|picture| paths::sibling(&named, &picture));
+    let called = picture.as_deref().map(|picture| new::called(Path::new(picture)));
+    let picture = called.as_deref().zip(picture.as_deref());
+    let looks = Looks { picture, color: color.as_deref(), both_sides };
+    let start = Start::within(state.document()).mesh(stem(path), &named, Some(mesh), looks);
+    Ok(Found { start, is_there: true, path: named, notes, copies })
+}
+
+fn picture(state: &State, (place, path): (&Path, &str)) -> Result<Found, String> {
+    let found = sources::picture(place, &state.scene.options().limits).map_err(refused)?;
+    let size = (found.picture.width(), found.picture.height());
+    let mut named = path.to_owned();
+    let copies = bring(place, outside(state, place), Vec::new(), &mut named)?;
+    let start = Start::within(state.document()).picture(stem(path), &named, size);
+    Ok(Found { start, is_there: true, path: named, notes: found.notes, copies })
 }
 
 fn refused(error: Error) -> String {

@@ -5,7 +5,7 @@ use super::items::{go_to, target};
 use crate::base::pointer::Pointer;
 use crate::base::problem::quoted;
 use crate::layers::parts::materials::List;
-use crate::scene::{Edit, field};
+use crate::scene::{Edit, field, named};
 use crate::tui::state::{Mode, State};
 use crate::tui::text::line::Line;
 use crate::tui::text::said::unquoted;
@@ -23,7 +23,7 @@ fn rename(state: &mut State, call: &Call) -> Done {
     let entry = List::entry(&path);
     let value = field::value(state.document(), &path);
     let old =
-        entry.clone().map(|(_, name)| name).or_else(|| field::name_of(value.as_ref())).ok_or("this has no name")?;
+        entry.clone().map(|(_, name)| name).or_else(|| named::name_of(value.as_ref())).ok_or("this has no name")?;
     let name = unquoted(call.text);
     if name.is_empty() {
         state.typing.mode = Mode::Line(Line::with(&format!("rename {old}")));

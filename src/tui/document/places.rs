@@ -5,7 +5,7 @@ use serde_json::Value;
 
 use crate::base::pointer::Pointer;
 use crate::scene::schema::{Body, Place};
-use crate::scene::{Document, address, field};
+use crate::scene::{Document, field, named};
 use crate::tui::text::numbers;
 
 /// One place of a scene.
@@ -59,9 +59,8 @@ fn below(document: &Document, place: Place, (at, address): (&str, &str), all: &m
     let body = place.shape.body();
     let items = matches!(body, Body::List(..));
     for (token, inner) in steps(document, place, at) {
-        let (pointer, address) =
-            (Pointer(at).join(&token), address::below(address, (place.shape, body), &token, inner));
-        let mut words = match field::name_of(inner.value) {
+        let (pointer, address) = (Pointer(at).join(&token), named::below(address, (place.shape, body), &token, inner));
+        let mut words = match named::name_of(inner.value) {
             Some(name) => name.to_lowercase(),
             None if items => String::new(),
             None => token.to_lowercase(),
