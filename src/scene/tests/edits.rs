@@ -409,7 +409,7 @@ fn triples_have_x_y_and_z_and_sizes_are_whole() {
     assert_eq!((at.as_str(), field::field(&document, &at).unwrap().name.as_str()), ("/camera/position/1", "y"));
     assert_eq!(address::address(&document, "/camera/target/2"), "camera.target.z");
     let problems = document.apply(&Edit::set(&document, "/size", json!([100.5, 100]))).unwrap_err();
-    assert_eq!(problems[0].to_string(), "size.0: expected a whole number, found 100.5");
+    assert_eq!(problems[0].to_string(), "size.x: expected a whole number, found 100.5");
     let after = document.apply(&Edit::set(&document, "/size/0", 200.into())).unwrap();
     assert_eq!(after.json()["size"], json!([200, 720]));
 }
