@@ -127,7 +127,7 @@ fn what_keeps_the_first_picture_away_is_said_in_the_window_and_on_standard_error
         ("{bad".to_owned(), "plica: blink.plica.json: "),
         (
             std::fs::read_to_string(Place::new().scene).unwrap().replace("\"curve\"", "\"curvy\""),
-            "plica: blink.plica.json: layers.0.zones.0.motion.",
+            "plica: blink.plica.json: layers.face.zones.",
         ),
     ] {
         let place = Place::new();

@@ -26,7 +26,7 @@ pub fn list_of(path: &Path) -> List {
 ///
 /// # Errors
 /// As [`picture::read`]; of what is called neither as a picture nor as something else that a scene shows, what that can be.
-pub fn picture(path: &Path, limits: &Limits) -> Result<picture::Found> {
+pub fn picture(path: &Path, limits: &Limits) -> Result<picture::Loaded> {
     let name = path.to_string_lossy();
     let is_other = || path.is_file() && paths::kind_of(paths::file_of(&name)).is_none() && !picture::is_one(path);
     picture::read(path, limits).map_err(|error| match is_other() {

@@ -120,8 +120,8 @@ pub fn looks(file: File, place: &str, options: &Options) -> Result<Looks> {
     let budget = &limits.budget();
     let (kind, bytes, _share) = whole(file, place, limits, budget)?;
     match kind {
-        Kind::Obj => Ok(Looks::default()),
-        Kind::Gltf => gltf::looks(&bytes, With { place, limits, budget, sibling: &alone, outside: *outside }),
+        Format::Obj => Ok(Looks::default()),
+        Format::Gltf => gltf::looks(&bytes, With { place, limits, budget, sibling: &alone, outside: *outside }),
     }
 }
 

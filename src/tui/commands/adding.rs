@@ -45,11 +45,11 @@ fn add_file(state: &mut State, path: &str) -> Done {
         List::Meshes if place.exists() => model(state, source)?,
         List::Images if files_of(&place).exists() => picture(state, source)?,
         List::Meshes => {
-            Found::later(Start::within(state.document()).mesh(stem(path), path, None, Looks::default()), path)
+            Brought::later(Start::within(state.document()).mesh(stem(path), path, None, Looks::default()), path)
         }
-        _ => Found::later(Start::within(state.document()).picture(stem(path), path, (0, 0)), path),
+        _ => Brought::later(Start::within(state.document()).picture(stem(path), path, (0, 0)), path),
     };
-    let Found { start, is_there, path, mut notes, copies } = found;
+    let Brought { start, is_there, path, mut notes, copies } = found;
     let own = format!("/{}", list.words().0);
     let in_list = target(state).is_ok_and(|at| Pointer(&at).is_within(&own));
     let start = if is_there && !in_list { start } else { start.without_layers() };
@@ -71,7 +71,7 @@ fn add_file(state: &mut State, path: &str) -> Done {
 }
 
 /// What a file brings into the scene.
-struct Found {
+struct Brought {
     start: Start,
     /// Whether the file is there.
     is_there: bool,
@@ -81,10 +81,10 @@ struct Found {
     copies: Option<(PathBuf, new::Copies)>,
 }
 
-impl Found {
+impl Brought {
     /// What is named before its file is there.
-    fn later(start: Start, path: &str) -> Found {
-        Found { start, is_there: false, path: path.to_owned(), notes: Vec::new(), copies: None }
+    fn later(start: Start, path: &str) -> Brought {
+        Brought { start, is_there: false, path: path.to_owned(), notes: Vec::new(), copies: None }
     }
 }
 
@@ -93,7 +93,7 @@ fn outside(state: &State, file: &Path) -> Option<PathBuf> {
     paths::folder_beside(state.scene.path(), file).filter(|_| !state.scene.options().allow_outside)
 }
 
-fn clip(state: &State, (place, path): (&Path, &str)) -> Result<Found, String> {
+fn clip(state: &State, (place, path): (&Path, &str)) -> Result<Brought, String> {
     let found = clips::find(place).map_err(refused)?;
     let folder = if place.is_dir() { path.trim_end_matches('/') } else { folder_of(path) };
     let last = Some(name_of(folder)).filter(|last| !last.is_empty()).unwrap_or("clip");
@@ -109,10 +109,10 @@ fn clip(state: &State, (place, path): (&Path, &str)) -> Result<Found, String> {
     let known = size.map(|size_px| Known { size_px, frames: found.files.len(), is_still: false });
     let name = clips::called(&found.name, last);
     let start = Start::within(state.document()).clip(name, &path, found.first, known);
-    Ok(Found { start, is_there: first.is_some_and(|first| first.exists()), path, notes: Vec::new(), copies })
+    Ok(Brought { start, is_there: first.is_some_and(|first| first.exists()), path, notes: Vec::new(), copies })
 }
 
-fn model(state: &State, (place, path): (&Path, &str)) -> Result<Found, String> {
+fn model(state: &State, (place, path): (&Path, &str)) -> Result<Brought, String> {
     let models::Model { mesh, picture, color, both_sides, beside, notes } =
         models::read(place, state.scene.options()).map_err(refused)?;
     let mut named = path.to_owned();
@@ -122,16 +122,16 @@ fn model(state: &State, (place, path): (&Path, &str)) -> Result<Found, String> {
     let picture = called.as_deref().zip(picture.as_deref());
     let looks = Looks { picture, color: color.as_deref(), both_sides };
     let start = Start::within(state.document()).mesh(stem(path), &named, Some(mesh), looks);
-    Ok(Found { start, is_there: true, path: named, notes, copies })
+    Ok(Brought { start, is_there: true, path: named, notes, copies })
 }
 
-fn picture(state: &State, (place, path): (&Path, &str)) -> Result<Found, String> {
+fn picture(state: &State, (place, path): (&Path, &str)) -> Result<Brought, String> {
     let found = sources::picture(place, &state.scene.options().limits).map_err(refused)?;
     let size = (found.picture.width(), found.picture.height());
     let mut named = path.to_owned();
     let copies = bring(place, outside(state, place), Vec::new(), &mut named)?;
     let start = Start::within(state.document()).picture(stem(path), &named, size);
-    Ok(Found { start, is_there: true, path: named, notes: found.notes, copies })
+    Ok(Brought { start, is_there: true, path: named, notes: found.notes, copies })
 }
 
 fn refused(error: Error) -> String {

@@ -4,7 +4,7 @@ use crate::base::pointer::Pointer;
 use crate::scene::{Document, address};
 use crate::tui::document::pointers::item_of;
 use crate::tui::text::plain;
-use serde_json::{Map, Value, json as value};
+use serde_json::{Map, Value};
 
 use std::collections::BTreeSet;
 
