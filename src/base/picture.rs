@@ -250,6 +250,16 @@ impl Picture {
         &self.samples
     }
 
+    /// Whether nothing shines through any of its pixels.
+    pub fn is_opaque(&self) -> bool {
+        let mut row = vec![[0.0; 4]; self.width];
+        !self.channels.have_alpha()
+            || (0..self.height).all(|y| {
+                self.row(0, y, &mut row);
+                row.iter().all(|[.., alpha]| *alpha >= 1.0)
+            })
+    }
+
     /// How many bytes of memory it takes.
     pub fn bytes(&self) -> u64 {
         let each = match self.samples {

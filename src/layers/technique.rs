@@ -74,6 +74,11 @@ pub trait Technique: Any + Send + Sync {
         None
     }
 
+    /// Whether nothing of what is beneath the layer is seen in a frame of this width and height, at any time.
+    fn covers(&self, _size_px: (usize, usize), _materials: &Materials) -> bool {
+        false
+    }
+
     /// The problems that only show when the layer is made, which takes as long; asked for where there are no others.
     fn check_made(&self, _making: &Making) -> Vec<Problem> {
         Vec::new()

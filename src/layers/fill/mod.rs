@@ -10,11 +10,13 @@ use kurbo::Rect;
 use serde_json::{Value, json};
 
 use self::model::FillLayer;
+use super::parts::materials::Materials;
 use super::parts::moment::{Moment, Space};
 use super::parts::readout::ReadOut;
 use super::ready::{Making, Ready};
 use super::starts::{Starts, halfway};
 use super::technique::{Checked, Kind, Technique};
+use crate::base::color;
 use crate::base::problem::Problem;
 
 /// The technique.
@@ -49,6 +51,10 @@ impl Technique for FillLayer {
 
     fn check(&self, _before: Option<(&dyn Technique, &Checked)>) -> Checked {
         Checked(vec![FillLayer::check(self).into()])
+    }
+
+    fn covers(&self, _size_px: (usize, usize), _materials: &Materials) -> bool {
+        self.colors().all(|color| color::parse(color).is_some_and(|[.., alpha]| alpha == 255))
     }
 
     fn bounds(&self, _path: &str) -> Rect {

@@ -59,6 +59,12 @@ fn white() -> String {
 }
 
 impl FillLayer {
+    /// The colors that it shows.
+    pub fn colors(&self) -> impl Iterator<Item = &str> {
+        let stops = self.gradient.iter().flat_map(|gradient| gradient.stops.iter().map(|Stop(_, color)| &**color));
+        stops.chain(self.gradient.is_none().then_some(&*self.color))
+    }
+
     /// The checks beyond shape.
     pub fn check(&self) -> Vec<Problem> {
         let mut problems: Vec<Problem> = check::color(&self.color, "/color").into_iter().collect();

@@ -127,6 +127,10 @@ impl Technique for PictureLayer {
         check::check_materials(self, materials)
     }
 
+    fn covers(&self, size_px: (usize, usize), materials: &Materials) -> bool {
+        needs::covers(self, size_px, materials)
+    }
+
     fn uses(&self) -> Vec<Use<'_>> {
         needs::uses(self)
     }

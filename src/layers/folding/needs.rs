@@ -3,7 +3,7 @@
 use super::counts;
 use super::model::{PictureLayer, Zone};
 use super::shared;
-use crate::layers::parts::materials::{List, Of, Use, What};
+use crate::layers::parts::materials::{List, Materials, Of, Use, What};
 use crate::layers::technique::Count;
 
 /// The pictures and files that the layer names: its own, then zone by zone.
@@ -29,6 +29,16 @@ pub fn uses(layer: &PictureLayer) -> Vec<Use<'_>> {
     let named = shared::uses(layer).map(|(at, name)| Use { at, of: Of::Name(List::Shapes, name), what: What::Shape });
     uses.extend(named);
     uses
+}
+
+/// Whether the layer hides all that is beneath it in a frame of this size: its picture fills it, and nothing shines through that or
+/// through another one that a zone shows.
+pub fn covers(layer: &PictureLayer, size_px: (usize, usize), materials: &Materials) -> bool {
+    let own = materials.pictures.get(&layer.image);
+    let fills = own.is_some_and(|own| own.width() >= size_px.0 && own.height() >= size_px.1);
+    let images = layer.zones.iter().filter_map(|zone| zone.sampler.as_ref()?.image.as_ref());
+    let mut shown = std::iter::once(&layer.image).chain(images);
+    fills && shown.all(|image| materials.pictures.get(image).is_some_and(|image| image.is_opaque()))
 }
 
 /// The numbers of anchors and outline points that the layer asks for, place by place, before any are made.

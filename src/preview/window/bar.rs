@@ -1,12 +1,12 @@
 //! The bar at the bottom: time, what is said of the scene, and where the pointer is. What does not fit goes, the least
-//! important first.
+//! important first; a message that does not fit stands above it.
 
 use kurbo::{Point, Rect};
 
 use super::canvas::Canvas;
 use super::state::{BAR_PX, State};
 use super::stroke::Color;
-use super::style::{ACCENT, DIM, MARGIN_PX, RAIL, TEXT, TEXT_PX, WARNING};
+use super::style::{ACCENT, DIM, MARGIN_PX, PANEL, RAIL, TEXT, TEXT_PX, WARNING};
 use super::text::Letters;
 use crate::base::number::rounded;
 
@@ -55,23 +55,58 @@ pub fn draw(canvas: &mut Canvas, state: &State, letters: &Letters) {
     canvas.rect(rail, corner, RAIL);
     canvas.rect(Rect::new(rail.x0, rail.y0, knob.x, rail.y1), corner, ACCENT);
     canvas.disc(knob, 4.0 * scale, ACCENT);
-    let (height, gap) = (TEXT_PX * scale, GAP_PX * scale);
+    let height = TEXT_PX * scale;
     let y = area.height + (BAR_PX - 7.0 - TEXT_PX) * scale;
     sign(canvas, state.transport.playing, Point::new(rail.x0, y), height);
-    let from = rail.x0 + SIGN_PX * scale;
+    let Row { times, times_at, said, color, said_at, room, right, right_at } = row(state, letters);
+    canvas.text(&letters.line(&times, height), Point::new(times_at, y), TEXT);
+    canvas.text(&letters.line(&right, height), Point::new(right_at, y), DIM);
+    if room > 2.0 * height {
+        canvas.text(&letters.within(&said, height, room), Point::new(said_at, y), color);
+    }
+}
+
+/// The texts of the bar, and where they begin.
+struct Row {
+    times: String,
+    times_at: f64,
+    said: String,
+    color: Color,
+    said_at: f64,
+    /// For what is said.
+    room: f64,
+    right: String,
+    right_at: f64,
+}
+
+fn row(state: &State, letters: &Letters) -> Row {
+    let (rail, scale) = (rail(state), state.scale);
+    let (height, gap) = (TEXT_PX * scale, GAP_PX * scale);
     let width = |text: &str| letters.width(text, height);
-    let times = first_that_fits(times(state), TIMES * (rail.x1 - from), width);
-    canvas.text(&letters.line(&times, height), Point::new(from, y), TEXT);
-    let from = if times.is_empty() { from } else { from + width(&times) + gap };
+    let times_at = rail.x0 + SIGN_PX * scale;
+    let times = first_that_fits(times(state), TIMES * (rail.x1 - times_at), width);
+    let said_at = if times.is_empty() { times_at } else { times_at + width(&times) + gap };
     let (said, color) = said(state);
-    let room = rail.x1 - from;
+    let room = rail.x1 - said_at;
     let right = right_text(state, room - gap - width(&said).min(SAID * room), width);
     let right_at = rail.x1 - width(&right);
-    canvas.text(&letters.line(&right, height), Point::new(right_at, y), DIM);
-    let room = right_at - from - gap;
-    if room > 2.0 * height {
-        canvas.text(&letters.within(&said, height, room), Point::new(from, y), color);
+    Row { times, times_at, said, color, said_at, room: right_at - said_at - gap, right, right_at }
+}
+
+/// Draws a message of which the bar has room for the beginning only, all of it on as many lines as it takes, at the bottom of
+/// what is `free` of the area; returns what is free then. What is being done is told in few words, and changes.
+pub fn whole(canvas: &mut Canvas, state: &State, letters: &Letters, free: Rect) -> Rect {
+    let Row { said, color, room, .. } = row(state, letters);
+    let is_message = color == WARNING || [&state.words.told, &state.no_pass].contains(&&Some(said.clone()));
+    let [margin, height] = [MARGIN_PX, TEXT_PX].map(|length| length * state.scale);
+    if !is_message || letters.width(&said, height) <= room {
+        return free;
     }
+    let text = letters.wrapped(&said, height, (free.width() - 2.0 * margin).max(4.0 * height));
+    let top = (free.y1 - text.height() - 2.0 * margin).max(free.y0).round();
+    canvas.rect(Rect { y0: top, ..free }, 0.0, PANEL);
+    canvas.text(&text, Point::new(free.x0 + margin, top + margin), color);
+    Rect { y1: top, ..free }
 }
 
 fn first_that_fits(texts: Vec<String>, room: f64, width: impl Fn(&str) -> f64) -> String {
@@ -268,6 +303,26 @@ mod tests {
         state.words.progress = None;
         state.words.follow_link(vec![Problem::error("", "not a scene")]);
         assert_eq!(said(&state).0, "nothing to show yet");
+    }
+
+    #[test]
+    fn a_message_that_does_not_fit_stands_above_the_bar_with_its_cure() {
+        let letters = Letters::default();
+        let cure = "there is no pass \"dept\" (did you mean \"depth\"?)".to_owned();
+        for (width, fits) in [(200.0, false), (480.0, false), (1400.0, true)] {
+            let mut state = State { no_pass: Some(cure.clone()), ..state() };
+            state.resize(Size::new(width, 400.0), 1.0);
+            let (mut canvas, area) = (Canvas::default(), state.area().to_rect());
+            let free = whole(&mut canvas, &state, &letters, area);
+            assert_eq!((free == area, canvas.strokes.is_empty()), (fits, fits), "{width}");
+            let glyphs = canvas.strokes.iter().filter(|stroke| stroke.form == super::super::stroke::GLYPH);
+            assert!(fits || glyphs.count() >= cure.chars().filter(|c| !c.is_whitespace()).count(), "{width}");
+            assert!(canvas.strokes.iter().all(|s| s.b[0] <= width as f32 && f64::from(s.b[1]) <= area.y1), "{width}");
+        }
+        let mut state = State { work: Some(Work { what: "synthesising", percent: Some(3) }), ..state() };
+        state.resize(Size::new(200.0, 400.0), 1.0);
+        let area = state.area().to_rect();
+        assert_eq!(whole(&mut Canvas::default(), &state, &letters, area), area);
     }
 
     #[test]

@@ -18,6 +18,7 @@ pub fn draw(state: &State, letters: &Letters) -> Canvas {
     marked(&mut canvas, state);
     dragged(&mut canvas, state);
     let free = problems::draw(&mut canvas, state, letters);
+    let free = bar::whole(&mut canvas, state, letters, free);
     match state.panel {
         Panel::None => legend::draw(&mut canvas, state, letters, free),
         Panel::Menu => panel::draw(&mut canvas, state, letters, free, KEYS.iter().filter(|row| row.context == VIEW)),
