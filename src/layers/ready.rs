@@ -232,6 +232,10 @@ pub trait Still: Sync {
     /// other, with all surfaces of the group, whose depths in meters are `depth`. Nothing for layers without sprites.
     fn sprites(&self, _rows: &[usize], _columns: Columns, _depth: &[f64], _out: &mut [Rgba]) {}
 
+    /// The same for all columns of a layer on which something is drawn: writes only depths, and which part of the layer is seen,
+    /// in numbers of its own.
+    fn parts(&self, _y: usize, _depth: &mut [f64], _parts: &mut [u32]) {}
+
     /// What a pass has where something is drawn on the surfaces of the layer, as one of a group: writes the pixels that
     /// show the layer. Nothing for layers on which nothing is drawn.
     fn strokes(&self, _which: Which, _surfaces: &Surfaces, _out: &mut [Rgba]) {}
@@ -247,6 +251,8 @@ pub struct Surfaces<'a> {
     pub depth: &'a [f64],
     /// Which layer each is of.
     pub layer: &'a [u32],
+    /// Which part of that, if something is drawn on it (see [`Still::parts`]).
+    pub part: &'a [u32],
     /// The layer that is asked.
     pub own: u32,
 }

@@ -98,6 +98,8 @@ pub struct Whole {
     depth: Vec<f64>,
     /// Which layer each is of.
     layer: Vec<u32>,
+    /// Which part of it.
+    part: Vec<u32>,
 }
 
 /// Bytes that a pixel takes while it is drawn: what a layer hands out, a few noises, and the drawing.
@@ -134,11 +136,16 @@ impl Wholes {
             Columns::All => whole.width / each,
             Columns::Some(columns) => columns.len(),
         };
-        let at = |y: &usize| {
+        let (mut color, mut depth) = (vec![[0.0; 4]; rows.len() * count], vec![0.0; rows.len() * count]);
+        let lines = color.par_chunks_mut(count.max(1)).zip(depth.par_chunks_mut(count.max(1))).zip(rows);
+        lines.for_each(|((color, depth), y)| {
             let row = (y * each + down) * whole.width + across;
-            (0..count).map(move |cell| row + columns.at(cell) * each)
-        };
-        Some(rows.iter().flat_map(at).map(|i| (whole.color[i], whole.depth[i])).unzip())
+            for (cell, (color, depth)) in color.iter_mut().zip(depth).enumerate() {
+                let i = row + columns.at(cell) * each;
+                (*color, *depth) = (whole.color[i], whole.depth[i]);
+            }
+        });
+        Some((color, depth))
     }
 }
 
@@ -150,35 +157,40 @@ impl Whole {
         let layers = group.layers();
         let stills: Vec<(usize, Box<dyn Still + '_>)> =
             layers.iter().map(|&layer| (layer, synth.layers[layer].at(moment))).collect();
-        let mut whole = surfaces(&stills, moment.size_px);
+        let mut whole = surfaces(synth, &stills, moment.size_px);
         whole.draw(&stills, which);
         whole
     }
 
     fn draw(&mut self, stills: &[(usize, Box<dyn Still + '_>)], which: Which) {
-        let Whole { color, depth, layer, .. } = self;
+        let Whole { color, depth, layer, part, .. } = self;
         for (own, still) in stills {
-            still.strokes(which, &Surfaces { depth, layer, own: *own as u32 }, color);
+            still.strokes(which, &Surfaces { depth, layer, part, own: *own as u32 }, color);
         }
     }
 }
 
 /// The surfaces of a group, with nothing drawn on them.
-fn surfaces(stills: &[(usize, Box<dyn Still + '_>)], (width, height): (usize, usize)) -> Whole {
+fn surfaces(synth: &Synth, stills: &[(usize, Box<dyn Still + '_>)], (width, height): (usize, usize)) -> Whole {
     let mut color = vec![[0.0; 4]; width * height];
     let mut depth = vec![f64::INFINITY; color.len()];
-    let mut layer = vec![u32::MAX; color.len()];
+    let (mut layer, mut part) = (vec![u32::MAX; color.len()], vec![u32::MAX; color.len()]);
     let width_or_1 = width.max(1);
     let rows = color.par_chunks_mut(width_or_1).zip(depth.par_chunks_mut(width_or_1));
-    rows.zip(layer.par_chunks_mut(width_or_1)).enumerate().for_each(|(y, ((color, depth), layer))| {
+    let parts = layer.par_chunks_mut(width_or_1).zip(part.par_chunks_mut(width_or_1));
+    rows.zip(parts).enumerate().for_each(|(y, ((color, depth), (layer, part)))| {
         let mut before = depth.to_vec();
         for (own, still) in stills {
-            still.surface(y, Columns::All, depth, color);
+            if synth.layers[*own].has_strokes() {
+                still.parts(y, depth, part);
+            } else {
+                still.surface(y, Columns::All, depth, color);
+            }
             let nearer = layer.iter_mut().zip(&mut before).zip(&*depth).filter(|((_, before), now)| *now < before);
             nearer.for_each(|((layer, before), now)| (*layer, *before) = (*own as u32, *now));
         }
     });
-    Whole { width, color, depth, layer }
+    Whole { width, color, depth, layer, part }
 }
 
 /// What a pass shows that is drawn on the surfaces of a group, in these columns and rows; transparent elsewhere. `None` if
@@ -187,7 +199,7 @@ fn pass(synth: &Synth, group: &Group, moment: &Moment, which: Which) -> Option<V
     is_whole(synth, group).then(|| {
         let stills: Vec<(usize, Box<dyn Still + '_>)> =
             group.layers().iter().map(|&layer| (layer, synth.layers[layer].at(moment))).collect();
-        let mut whole = surfaces(&stills, moment.size_px);
+        let mut whole = surfaces(synth, &stills, moment.size_px);
         whole.color.fill([0.0; 4]);
         whole.draw(&stills, which);
         whole.color

@@ -82,14 +82,27 @@ impl<'a> View<'a> {
 
     /// Calls `each` with every wanted cell of row `y` that shows the mesh nearer than `depth`, which becomes its depth.
     #[inline]
-    fn row_of(&self, y: usize, columns: Columns, depth: &mut [f64], mut each: impl FnMut(usize, Spot)) {
-        let Some(raster) = &self.raster else { return };
+    fn row_of(&self, y: usize, columns: Columns, depth: &mut [f64], each: impl FnMut(usize, Spot)) {
+        let triangles = self.triangles(y, columns, depth);
+        self.spots(y, columns, (depth, &triangles), each);
+    }
+
+    /// The triangle that each wanted cell of row `y` shows nearer than `depth`, which becomes its depth, or [`NONE`].
+    fn triangles(&self, y: usize, columns: Columns, depth: &mut [f64]) -> Vec<u32> {
         let mut triangles = vec![NONE; depth.len()];
-        raster.row(y, columns, depth, &mut triangles);
+        if let Some(raster) = &self.raster {
+            raster.row(y, columns, depth, &mut triangles);
+        }
+        triangles
+    }
+
+    /// Calls `each` with every wanted cell of row `y` that shows one of these triangles at these depths.
+    #[inline]
+    fn spots(&self, y: usize, columns: Columns, found: (&[f64], &[u32]), mut each: impl FnMut(usize, Spot)) {
+        let Some(raster) = &self.raster else { return };
         let corners = |triangle: usize| {
             self.mesh.triangles[triangle].map(|i| (self.world[i as usize], self.mesh.vertices[i as usize].uv))
         };
-        let found = (&*depth, &*triangles);
         raster.hits(y, columns, found, corners, |cell, hit, corners| each(cell, Spot::new(hit, corners)));
     }
 
@@ -158,43 +171,48 @@ impl<'a> Seen<'a> {
         let cells = given.triangle.par_chunks_mut(width).zip(given.normal.par_chunks_mut(width));
         let cells = cells.zip(given.shaded.par_chunks_mut(width)).zip(given.light.par_chunks_mut(width));
         cells.enumerate().for_each(|(y, (((triangle, normal), shaded), light))| {
-            let layer = &surfaces.layer[y * width..];
+            let row = y * width..(y + 1) * width;
+            let parts = surfaces.layer[row.clone()].iter().zip(&surfaces.part[row.clone()]);
+            let own = parts.map(|(layer, part)| if *layer == surfaces.own { *part } else { NONE });
+            triangle.iter_mut().zip(own).for_each(|(triangle, own)| *triangle = own);
             let mut reader = self.surface.reader();
-            self.view.row_of(y, Columns::All, &mut vec![f64::INFINITY; width], |x, spot| {
-                if layer[x] == surfaces.own {
-                    (triangle[x], normal[x]) = (spot.hit.triangle as u32, spot.normal.as_vec3());
-                    (shaded[x], light[x]) = (self.shaded(&spot, &mut reader), self.lit(&spot));
-                }
+            self.view.spots(y, Columns::All, (&surfaces.depth[row], triangle), |x, spot| {
+                normal[x] = spot.normal.as_vec3();
+                (shaded[x], light[x]) = (self.shaded(&spot, &mut reader), self.lit(&spot));
             });
         });
         Some(given)
     }
 
-    /// The frame of the layer alone, without strokes, and how far away it is.
-    pub fn bare(&self) -> (Vec<Rgba>, Vec<f64>) {
+    /// The frame of the layer alone, without strokes.
+    pub fn bare(&self) -> Vec<Rgba> {
+        let (width, height) = self.moment.size_px;
+        let mut out = vec![[0.0; 4]; width * height];
+        let rows = out.par_chunks_mut(width.max(1)).enumerate();
+        rows.for_each(|(y, row)| self.surface(y, Columns::All, &mut vec![f64::INFINITY; row.len()], row));
+        out
+    }
+
+    /// Makes something of the surfaces of a frame in which nothing else is.
+    fn by_itself<R>(&self, make: impl FnOnce(&Surfaces) -> R) -> R {
         let (width, height) = self.moment.size_px;
         let mut depth = vec![f64::INFINITY; width * height];
-        let mut out = vec![[0.0; 4]; depth.len()];
-        let rows = depth.par_chunks_mut(width.max(1)).zip(out.par_chunks_mut(width.max(1))).enumerate();
-        rows.for_each(|(y, (depth, out))| self.surface(y, Columns::All, depth, out));
-        (out, depth)
+        let mut part = vec![NONE; depth.len()];
+        let rows = depth.par_chunks_mut(width.max(1)).zip(part.par_chunks_mut(width.max(1))).enumerate();
+        rows.for_each(|(y, (depth, part))| self.parts(y, depth, part));
+        make(&Surfaces { depth: &depth, layer: &vec![0; depth.len()], part: &part, own: 0 })
     }
 
     /// What its strokes are drawn from if nothing else is there.
     pub fn given_alone(&self) -> Option<Given<'_>> {
-        let depth = self.bare().1;
-        self.given(&Surfaces { depth: &depth, layer: &vec![0; depth.len()], own: 0 })
+        self.by_itself(|surfaces| self.given(surfaces))
     }
 
     /// The frame of the layer alone, with its strokes.
     fn alone(&self) -> Vec<Rgba> {
-        let (mut out, depth) = self.bare();
-        let layer = vec![0; depth.len()];
-        self.strokes(
-            Which { pass: &pass::COLOR, of: None },
-            &Surfaces { depth: &depth, layer: &layer, own: 0 },
-            &mut out,
-        );
+        let mut out = vec![[0.0; 4]; self.moment.size_px.0 * self.moment.size_px.1];
+        let which = Which { pass: &pass::COLOR, of: None };
+        self.by_itself(|surfaces| self.strokes(which, surfaces, &mut out));
         out
     }
 }
@@ -216,6 +234,12 @@ impl Still for Seen<'_> {
     fn surface(&self, y: usize, columns: Columns, depth: &mut [f64], out: &mut [Rgba]) {
         let mut reader = self.surface.reader();
         self.view.row_of(y, columns, depth, |cell, spot| out[cell] = self.shaded(&spot, &mut reader));
+    }
+
+    fn parts(&self, y: usize, depth: &mut [f64], parts: &mut [u32]) {
+        let triangles = self.view.triangles(y, Columns::All, depth);
+        let nearer = parts.iter_mut().zip(triangles).filter(|(_, triangle)| *triangle != NONE);
+        nearer.for_each(|(part, triangle)| *part = triangle);
     }
 
     fn pass(&self, pass: &Pass, y: usize, columns: Columns, depth: &mut [f64], out: &mut [Rgba]) {

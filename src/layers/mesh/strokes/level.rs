@@ -13,7 +13,9 @@ const SPARSE: usize = 4;
 pub struct Level {
     /// 1 / its depth, as the `plane` of an impulse.
     pub plane: DVec3,
-    /// The least difference of 1 / the layer's depth to it.
+    /// What 1 / the layer's depth is more than that in each pixel, in rows of a stride; not a number where the layer is not seen.
+    pub away: Vec<f32>,
+    /// The least of that.
     pub least: f64,
     /// The greatest.
     pub most: f64,
@@ -21,12 +23,13 @@ pub struct Level {
 
 impl Level {
     /// That of a tile of a frame of this width: of 1 / the depth and the triangle of each pixel. `None` if the layer is not
-    /// seen in it.
+    /// seen in it. `stride` is a multiple of the lanes.
     #[inline(always)]
     pub fn new(
         (width, inverse, triangle): (usize, &[f64], &[u32]),
         columns: &Range<usize>,
         rows: &Range<usize>,
+        stride: usize,
     ) -> Option<Level> {
         let own = |x: usize, y: usize| {
             let i = y * width + x;
@@ -47,22 +50,26 @@ impl Level {
         // Any plane serves; a close one tells more.
         let fit = if squares.determinant() > 1.0 { squares.inverse() * sums } else { DVec3::ZERO };
         let plane = fit.with_z(fit.z - fit.x * corner.x - fit.y * corner.y);
-        let (mut least, mut most) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
-        for y in rows.clone() {
+        let mut away = vec![f32::NAN; stride * rows.len()];
+        for (away, y) in away.chunks_exact_mut(stride).zip(rows.clone()) {
             let own = y * width + columns.start..y * width + columns.end;
-            let down = plane.x * (columns.start as f64 + 0.5) + plane.y * (y as f64 + 0.5) + plane.z;
-            let lumps = inverse[own.clone()].chunks(LANES).zip(triangle[own].chunks(LANES));
-            for (lump, (inverse, triangle)) in lumps.enumerate() {
-                let down = plane.x * (lump * LANES) as f64 + down;
-                for (k, (inverse, triangle)) in inverse.iter().zip(triangle).enumerate() {
-                    let (away, own) = (inverse - (plane.x * k as f64 + down), *triangle != u32::MAX);
-                    least[k] = if own && away < least[k] { away } else { least[k] };
-                    most[k] = if own && away > most[k] { away } else { most[k] };
-                }
+            let first = plane.x * (columns.start as f64 + 0.5) + plane.y * (y as f64 + 0.5) + plane.z;
+            let pixels = inverse[own.clone()].iter().zip(&triangle[own]);
+            for (x, (away, (inverse, triangle))) in away.iter_mut().zip(pixels).enumerate() {
+                let found = (inverse - (plane.x * x as f64 + first)) as f32;
+                *away = if *triangle != u32::MAX { found } else { f32::NAN };
             }
         }
-        let (least, most) =
-            (least.into_iter().fold(f64::INFINITY, f64::min), most.into_iter().fold(f64::NEG_INFINITY, f64::max));
-        (least <= most).then_some(Level { plane, least, most })
+        let (mut least, mut most) = ([f32::INFINITY; LANES], [f32::NEG_INFINITY; LANES]);
+        for lump in away.as_chunks::<LANES>().0 {
+            for (k, away) in lump.iter().enumerate() {
+                // What is not a number is neither.
+                least[k] = if *away < least[k] { *away } else { least[k] };
+                most[k] = if *away > most[k] { *away } else { most[k] };
+            }
+        }
+        let least = f64::from(least.into_iter().fold(f32::INFINITY, f32::min));
+        let most = f64::from(most.into_iter().fold(f32::NEG_INFINITY, f32::max));
+        (least <= most).then_some(Level { plane, away, least, most })
     }
 }

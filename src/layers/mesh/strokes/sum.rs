@@ -97,8 +97,7 @@ struct Tile<'a> {
     rows: Range<usize>,
     trim: Trim,
     level: Level,
-    /// 1 / the depth of what each pixel shows, in rows of `STRIDE`, as are the sums.
-    inverse: Vec<f64>,
+    /// In rows of `STRIDE`.
     value: Vec<f32>,
     power: Vec<f32>,
 }
@@ -107,14 +106,9 @@ impl<'a> Tile<'a> {
     /// `None` if the layer is not seen in it.
     #[inline(always)]
     fn new(shown: &'a Shown<'a>, columns: Range<usize>, rows: Range<usize>, trim: Trim) -> Option<Tile<'a>> {
-        let level = Level::new((shown.size_px.0, shown.inverse, shown.triangle), &columns, &rows)?;
+        let level = Level::new((shown.size_px.0, shown.inverse, shown.triangle), &columns, &rows, STRIDE)?;
         let cells = STRIDE * rows.len();
-        let mut inverse = vec![0.0; cells];
-        for (own, y) in inverse.chunks_exact_mut(STRIDE).zip(rows.clone()) {
-            let from = y * shown.size_px.0;
-            own[..columns.len()].copy_from_slice(&shown.inverse[from + columns.start..from + columns.end]);
-        }
-        Some(Tile { shown, columns, rows, trim, level, inverse, value: vec![0.0; cells], power: vec![0.0; cells] })
+        Some(Tile { shown, columns, rows, trim, level, value: vec![0.0; cells], power: vec![0.0; cells] })
     }
 
     /// Adds these impulses.
@@ -178,11 +172,11 @@ impl<'a> Tile<'a> {
             }
             match self.trim {
                 Trim::Depth(reach) => {
-                    let inverse = &self.inverse[from..from + wide];
+                    let away = &self.level.away[from..from + wide];
                     let scale = impulse.depth * self.shown.focal_px / radius_px;
-                    let level = impulse.plane.y * (y as f64 + 0.5) + impulse.plane.z;
-                    let level = level + impulse.plane.x * (columns.start as f64 + 0.5);
-                    near(&mut covers[..wide], inverse, (impulse.plane.x, level), (scale, reach));
+                    let plane = impulse.plane - self.level.plane;
+                    let first = plane.x * (columns.start as f64 + 0.5) + plane.y * (y as f64 + 0.5) + plane.z;
+                    near(&mut covers[..wide], away, (plane.x * scale, first * scale), (scale, reach));
                 }
                 Trim::Object | Trim::Triangle => {
                     let covered = trimmed(self.shown, self.trim, impulse, y, columns.clone());
@@ -271,18 +265,19 @@ fn add_row(
     }
 }
 
-/// How much of a kernel pixels of a row show, by their 1 / depth: what is within its reach of a plane that has the second
-/// of `level` at the first pixel and grows by the first.
+/// How much of a kernel pixels of a row show, by how far they are from the level of the tile: what is within its reach of
+/// a plane that is the second of `plane` from that at the first pixel, in radii, and grows by the first.
 #[inline(always)]
-fn near(covers: &mut [f32], inverse: &[f64], level: (f64, f64), (scale, reach): (f64, f64)) {
+fn near(covers: &mut [f32], away: &[f32], (slope, first): (f64, f64), (scale, reach): (f64, f64)) {
     let (from, often) = (reach as f32, (1.0 / reach) as f32);
-    let lumps = covers.as_chunks_mut::<LANES>().0.iter_mut().zip(inverse.as_chunks::<LANES>().0);
-    for (lump, (covers, inverse)) in lumps.enumerate() {
-        let first = level.0 * (lump * LANES) as f64 + level.1;
-        let (mut own, inverse) = ([0.0; LANES], *inverse);
+    let (slope, first, scale) = (slope as f32, first as f32, scale as f32);
+    let lumps = covers.as_chunks_mut::<LANES>().0.iter_mut().zip(away.as_chunks::<LANES>().0);
+    for (lump, (covers, away)) in lumps.enumerate() {
+        let first = slope * (lump * LANES) as f32 + first;
+        let (mut own, away) = ([0.0; LANES], *away);
         for k in 0..LANES {
-            let away = ((inverse[k] - (level.0 * k as f64 + first)).abs() * scale) as f32;
-            let x = ((away - from) * often).clamp(0.0, 1.0);
+            let off = (away[k] * scale - (slope * k as f32 + first)).abs();
+            let x = ((off - from) * often).clamp(0.0, 1.0);
             own[k] = 1.0 - x * x * (3.0 - 2.0 * x);
         }
         *covers = own;

@@ -23,11 +23,14 @@ impl Range {
     /// Makes tones of the brightness of linear colors: 0 is dark, 1 is light.
     #[inline(always)]
     pub fn tones(&self, lights: &mut [f64]) {
-        for light in lights {
-            let code = code(*light);
-            let tone = ((code - self.dark) / (self.light - self.dark)).clamp(0.0, 1.0);
-            let bent = power(tone, self.gamma);
-            *light = if tone > 0.0 { bent } else { 0.0 };
+        for light in &mut *lights {
+            *light = ((code(*light) - self.dark) / (self.light - self.dark)).clamp(0.0, 1.0);
+        }
+        if self.gamma != 1.0 {
+            for tone in lights {
+                let bent = power(*tone, self.gamma);
+                *tone = if *tone > 0.0 { bent } else { 0.0 };
+            }
         }
     }
 }
