@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::Synth;
 use super::stage::{Group, Stage};
-use super::whole::{Kept, Wholes};
+use super::whole::{Kept, Surfaced, Wholes};
 use crate::base::pixels::{Frame, Grid, Linear, Rgba, encode_all, over};
 use crate::base::simd::vectorised;
 use crate::layers::parts::moment::{Columns, Moment};
@@ -36,11 +36,14 @@ fn lines((synth, sample): (&Synth, usize), (scene_time, wholes): At, columns: Co
         let (shown, width) = (GroupAt { layers: &layers, group, columns }, width.max(1));
         let out = picture.cells_mut();
         let whole = wholes.of(i, sample, columns, rows);
-        if whole.is_some() || has_sprites(synth, group) {
+        let has_sprites = has_sprites(synth, group);
+        if whole.is_some() || has_sprites {
             // Sprites reach over many rows: all of these at once.
-            let (own, depth) = whole.unwrap_or_else(|| shown.surfaces(rows, width));
-            let own = shown.sprites(rows, &depth, own);
-            out.par_iter_mut().zip(own).for_each(|(beneath, color)| *beneath = over(color, *beneath));
+            let (mut own, depth) = whole.unwrap_or_else(|| shown.surfaces(rows, width));
+            if has_sprites {
+                own = shown.sprites(rows, &depth, own.into_owned()).into();
+            }
+            out.par_iter_mut().zip(own.par_iter()).for_each(|(beneath, color)| *beneath = over(*color, *beneath));
             continue;
         }
         let strips = out.par_chunks_mut(STRIP * width).zip(rows.par_chunks(STRIP));
@@ -92,12 +95,12 @@ impl GroupAt<'_> {
     }
 
     /// The same for these rows.
-    fn surfaces(&self, rows: &[usize], width: usize) -> (Vec<Rgba>, Vec<f64>) {
+    fn surfaces(&self, rows: &[usize], width: usize) -> Surfaced<'static> {
         let mut own = vec![[0.0; 4]; rows.len() * width];
         let mut depth = vec![f64::INFINITY; own.len()];
         let lines = own.par_chunks_mut(width).zip(depth.par_chunks_mut(width)).zip(rows.par_iter());
         lines.for_each(|((own, depth), &y)| self.row(y, depth, own));
-        (own, depth)
+        (own.into(), depth.into())
     }
 
     /// Draws sprites over surfaces, layer by layer.

@@ -1,6 +1,7 @@
 //! Groups on whose surfaces something is drawn: that needs all of a frame at once, so it is made once for all its rows, and
 //! for all samples of a pixel from one frame that is as many times larger.
 
+use std::borrow::Cow;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use rayon::prelude::*;
@@ -88,6 +89,9 @@ fn kept<T>(
     made
 }
 
+/// Colors, premultiplied, and how far away they are.
+pub type Surfaced<'a> = (Cow<'a, [Rgba]>, Cow<'a, [f64]>);
+
 /// All pixels of a group.
 #[derive(Debug)]
 pub struct Whole {
@@ -129,8 +133,14 @@ impl Wholes {
     }
 
     /// The colors and the depths of a group in these columns and rows of one of the samples, if it is among them.
-    pub fn of(&self, group: usize, sample: usize, columns: Columns, rows: &[usize]) -> Option<(Vec<Rgba>, Vec<f64>)> {
+    pub fn of(&self, group: usize, sample: usize, columns: Columns, rows: &[usize]) -> Option<Surfaced<'_>> {
         let whole = self.groups.get(group)?.as_ref()?;
+        if let (1, Columns::All, [first, .., last]) = (self.each_way, columns, rows)
+            && last - first + 1 == rows.len()
+        {
+            let own = first * whole.width..(last + 1) * whole.width;
+            return Some((Cow::Borrowed(&whole.color[own.clone()]), Cow::Borrowed(&whole.depth[own])));
+        }
         let (each, across, down) = (self.each_way, sample % self.each_way, sample / self.each_way);
         let count = match columns {
             Columns::All => whole.width / each,
@@ -145,7 +155,7 @@ impl Wholes {
                 (*color, *depth) = (whole.color[i], whole.depth[i]);
             }
         });
-        Some((color, depth))
+        Some((color.into(), depth.into()))
     }
 }
 

@@ -150,7 +150,9 @@ impl<'a> Seen<'a> {
     }
 
     /// What its strokes are drawn from; `None` without a camera.
-    fn given(&self, surfaces: &Surfaces) -> Option<Given<'_>> {
+    fn given(&self, ready: &strokes::Ready, surfaces: &Surfaces) -> Option<Given<'_>> {
+        // Memory that nothing is written to is never touched.
+        let (creases, of_light) = (ready.has_creases(), ready.is_of_light());
         let (width, count) = (self.moment.size_px.0.max(1), surfaces.depth.len());
         let mut given = Given {
             mesh: &self.synth.mesh,
@@ -177,8 +179,13 @@ impl<'a> Seen<'a> {
             triangle.iter_mut().zip(own).for_each(|(triangle, own)| *triangle = own);
             let mut reader = self.surface.reader();
             self.view.spots(y, Columns::All, (&surfaces.depth[row], triangle), |x, spot| {
-                normal[x] = spot.normal.as_vec3();
-                (shaded[x], light[x]) = (self.shaded(&spot, &mut reader), self.lit(&spot));
+                shaded[x] = self.shaded(&spot, &mut reader);
+                if creases {
+                    normal[x] = spot.normal.as_vec3();
+                }
+                if of_light {
+                    light[x] = self.lit(&spot);
+                }
             });
         });
         Some(given)
@@ -205,7 +212,8 @@ impl<'a> Seen<'a> {
 
     /// What its strokes are drawn from if nothing else is there.
     pub fn given_alone(&self) -> Option<Given<'_>> {
-        self.by_itself(|surfaces| self.given(surfaces))
+        let ready = self.synth.strokes.as_deref()?;
+        self.by_itself(|surfaces| self.given(ready, surfaces))
     }
 
     /// The frame of the layer alone, with its strokes.
@@ -227,8 +235,10 @@ impl Still for Seen<'_> {
     }
 
     fn strokes(&self, which: Which, surfaces: &Surfaces, out: &mut [Rgba]) {
-        let Some((ready, given)) = self.synth.strokes.as_deref().zip(self.given(surfaces)) else { return };
-        strokes::draw::pass(ready, &given, which, out);
+        let Some(ready) = self.synth.strokes.as_deref() else { return };
+        if let Some(given) = self.given(ready, surfaces) {
+            strokes::draw::pass(ready, &given, which, out);
+        }
     }
 
     fn surface(&self, y: usize, columns: Columns, depth: &mut [f64], out: &mut [Rgba]) {

@@ -87,7 +87,10 @@ fn made<R>(scene: &Scene, sets: &[Set], (shaded, tone): (&[Rgba], &[f32]), make:
     let strokes = &scene.ready.strokes;
     let names: BTreeSet<&str> = sets.iter().flat_map(Set::noises).map(|(_, name)| name).collect();
     let wanted = names.into_iter().filter_map(|name| Some((name.to_owned(), strokes.noises.get(name)?)));
-    let noises: BTreeMap<String, Noise> = wanted.map(|(name, wanted)| (name, scene.noise(wanted))).collect();
+    // Side by side: no thread waits while another sorts.
+    let wanted: Vec<_> = wanted.collect();
+    let noises: BTreeMap<String, Noise> =
+        wanted.into_par_iter().map(|(name, wanted)| (name, scene.noise(wanted))).collect();
     sheet_of(scene, (shaded, tone), &noises, |sheet| make(&Drawing::new(strokes, sets, sheet)))
 }
 

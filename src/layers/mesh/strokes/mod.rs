@@ -71,10 +71,10 @@ pub struct Given<'a> {
     pub inverse: Vec<f64>,
     /// The triangle of the layer that each pixel shows; `raster::NONE` where it shows none.
     pub triangle: Vec<u32>,
-    /// The normal there, in the world.
+    /// The normal there, in the world; zero if no mark has creases.
     pub normal: Vec<Vec3>,
     /// The shaded color there, premultiplied.
     pub shaded: Vec<Rgba>,
-    /// The light that falls there.
+    /// The light that falls there; none if tones are not of it.
     pub light: Vec<f32>,
 }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::bins::{Bins, TILE};
@@ -97,7 +97,8 @@ struct Tile<'a> {
     rows: Range<usize>,
     trim: Trim,
     level: Level,
-    /// In rows of `STRIDE`.
+    /// 1 / the depth of what each pixel shows, in rows of `STRIDE`, as are the sums.
+    inverse: Vec<f64>,
     value: Vec<f32>,
     power: Vec<f32>,
 }
@@ -106,9 +107,14 @@ impl<'a> Tile<'a> {
     /// `None` if the layer is not seen in it.
     #[inline(always)]
     fn new(shown: &'a Shown<'a>, columns: Range<usize>, rows: Range<usize>, trim: Trim) -> Option<Tile<'a>> {
-        let level = Level::new((shown.size_px.0, shown.inverse, shown.triangle), &columns, &rows, STRIDE)?;
+        let level = Level::new((shown.size_px.0, shown.inverse, shown.triangle), &columns, &rows)?;
         let cells = STRIDE * rows.len();
-        Some(Tile { shown, columns, rows, trim, level, value: vec![0.0; cells], power: vec![0.0; cells] })
+        let mut inverse = vec![0.0; cells];
+        for (own, y) in inverse.chunks_exact_mut(STRIDE).zip(rows.clone()) {
+            let from = y * shown.size_px.0;
+            own[..columns.len()].copy_from_slice(&shown.inverse[from + columns.start..from + columns.end]);
+        }
+        Some(Tile { shown, columns, rows, trim, level, inverse, value: vec![0.0; cells], power: vec![0.0; cells] })
     }
 
     /// Adds these impulses.
@@ -172,11 +178,11 @@ impl<'a> Tile<'a> {
             }
             match self.trim {
                 Trim::Depth(reach) => {
-                    let away = &self.level.away[from..from + wide];
+                    let inverse = &self.inverse[from..from + wide];
                     let scale = impulse.depth * self.shown.focal_px / radius_px;
-                    let plane = impulse.plane - self.level.plane;
-                    let first = plane.x * (columns.start as f64 + 0.5) + plane.y * (y as f64 + 0.5) + plane.z;
-                    near(&mut covers[..wide], away, (plane.x * scale, first * scale), (scale, reach));
+                    let level = impulse.plane.y * (y as f64 + 0.5) + impulse.plane.z;
+                    let level = level + impulse.plane.x * (columns.start as f64 + 0.5);
+                    near(&mut covers[..wide], inverse, (impulse.plane.x, level), (scale, reach));
                 }
                 Trim::Object | Trim::Triangle => {
                     let covered = trimmed(self.shown, self.trim, impulse, y, columns.clone());
@@ -207,16 +213,13 @@ impl<'a> Tile<'a> {
     /// Whether all of the layer here is within the reach of a kernel, or none of it; `None` if that differs.
     #[inline(always)]
     fn all(&self, impulse: &Impulse, reach: f64, columns: &Range<usize>, rows: &Range<usize>) -> Option<bool> {
-        let away = self.level.plane - impulse.plane;
-        let [x, y] = [columns, rows].map(|range| [range.start as f64 + 0.5, range.end as f64 - 0.5]);
-        let (x, y) = ([away.x * x[0], away.x * x[1]], [away.y * y[0], away.y * y[1]]);
-        let low = x[0].min(x[1]) + y[0].min(y[1]) + away.z + self.level.least;
-        let high = x[0].max(x[1]) + y[0].max(y[1]) + away.z + self.level.most;
+        let plane = self.level.plane - impulse.plane;
+        let corner = DVec2::new(self.columns.start as f64 + 0.5, self.rows.start as f64 + 0.5);
+        let first = plane.x * corner.x + plane.y * corner.y + plane.z;
+        let own = |range: &Range<usize>, from: usize| range.start - from..range.end - from;
+        let (columns, rows) = (own(columns, self.columns.start), own(rows, self.rows.start));
         let scale = impulse.depth * self.shown.focal_px / impulse.radius_px;
-        if high.max(-low) * scale <= reach {
-            return Some(true);
-        }
-        (low.max(-high) * scale >= 2.0 * reach).then_some(false)
+        self.level.within((first, plane.truncate()), &columns, &rows, reach / scale)
     }
 }
 
@@ -265,19 +268,18 @@ fn add_row(
     }
 }
 
-/// How much of a kernel pixels of a row show, by how far they are from the level of the tile: what is within its reach of
-/// a plane that is the second of `plane` from that at the first pixel, in radii, and grows by the first.
+/// How much of a kernel pixels of a row show, by their 1 / depth: what is within its reach of a plane that has the second
+/// of `level` at the first pixel and grows by the first.
 #[inline(always)]
-fn near(covers: &mut [f32], away: &[f32], (slope, first): (f64, f64), (scale, reach): (f64, f64)) {
+fn near(covers: &mut [f32], inverse: &[f64], level: (f64, f64), (scale, reach): (f64, f64)) {
     let (from, often) = (reach as f32, (1.0 / reach) as f32);
-    let (slope, first, scale) = (slope as f32, first as f32, scale as f32);
-    let lumps = covers.as_chunks_mut::<LANES>().0.iter_mut().zip(away.as_chunks::<LANES>().0);
-    for (lump, (covers, away)) in lumps.enumerate() {
-        let first = slope * (lump * LANES) as f32 + first;
-        let (mut own, away) = ([0.0; LANES], *away);
+    let lumps = covers.as_chunks_mut::<LANES>().0.iter_mut().zip(inverse.as_chunks::<LANES>().0);
+    for (lump, (covers, inverse)) in lumps.enumerate() {
+        let first = level.0 * (lump * LANES) as f64 + level.1;
+        let (mut own, inverse) = ([0.0; LANES], *inverse);
         for k in 0..LANES {
-            let off = (away[k] * scale - (slope * k as f32 + first)).abs();
-            let x = ((off - from) * often).clamp(0.0, 1.0);
+            let away = ((inverse[k] - (level.0 * k as f64 + first)).abs() * scale) as f32;
+            let x = ((away - from) * often).clamp(0.0, 1.0);
             own[k] = 1.0 - x * x * (3.0 - 2.0 * x);
         }
         *covers = own;
@@ -349,8 +351,6 @@ fn trimmed(shown: &Shown, trim: Trim, impulse: &Impulse, y: usize, columns: Rang
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec2;
-
     use super::*;
     use crate::base::maths::{cos, exp, sin};
     use crate::layers::mesh::strokes::curves::EDGE;

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::check;
 use super::curvature::Curvature;
 use super::force::Strokes;
-use super::model::{Along, By, Direction, Vary};
+use super::model::{Along, By, Direction, ToneOf, Vary};
 use super::pieces::Pieces;
 use crate::base::mesh::Mesh;
 use crate::base::picture::Picture;
@@ -75,6 +75,16 @@ impl Ready {
     /// The same for frames that are so many times smaller on each side.
     pub fn reduced(&self, by: usize) -> Ready {
         Ready { scale: self.scale / by as f64, ..self.clone() }
+    }
+
+    /// Whether its marks ask for normals.
+    pub fn has_creases(&self) -> bool {
+        self.strokes.marks.iter().any(|mark| mark.creases.is_some())
+    }
+
+    /// Whether its tones are of the light alone.
+    pub fn is_of_light(&self) -> bool {
+        self.strokes.tone.of == ToneOf::Light
     }
 
     /// The curvature smoothed so far.

@@ -97,7 +97,10 @@ impl Gauges {
         let [from, to] = near.limits.map(|at| at as usize);
         let mut gauge = near.gauge;
         for (view, limit) in &self.limits[from..to] {
-            gauge = gauge.max(limit * told(*view as usize));
+            // It tells at most everything.
+            if *limit > gauge {
+                gauge = gauge.max(limit * told(*view as usize));
+            }
             if gauge >= 1.0 {
                 break;
             }
