@@ -266,9 +266,10 @@ fn examples() -> Vec<(&'static str, Scene, Materials)> {
     KINDS.iter().map(example).collect()
 }
 
-/// The examples, and one of a view map, for what only that has.
+/// The examples, and one of a view map with strokes, for what only these have.
 fn examples_of_all() -> Vec<(&'static str, Scene, Materials)> {
-    let (scene, materials) = with_views(json!({}), &json!({}), &vec![json!({}); 3]);
+    let strokes = json!({"strokes": {"style": "hatching"}});
+    let (scene, materials) = with_views(strokes, &json!({}), &vec![json!({}); 3]);
     examples().into_iter().chain([("mesh", scene, materials)]).collect()
 }
 

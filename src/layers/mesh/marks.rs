@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::model::Sides;
 use super::synth::Synth;
+use super::{frame, strokes};
 use crate::layers::parts::marks::{Dot, Look, Mark, Overlay, Shape, View, When};
 use crate::layers::parts::moment::{CENTER, Columns, Moment};
 use crate::layers::space::eye::Eye;
@@ -22,7 +23,7 @@ const fn overlay(name: &'static str, key: &'static str, help: &'static str, hidd
     Overlay { hidden, ..Overlay::new(name, key, help, When::EveryFrame) }
 }
 
-/// Every overlay, but for those of surfaces.
+/// Every overlay, but for those of surfaces and strokes.
 pub static OVERLAYS: &[Overlay] = &[
     GROUND_OVERLAY,
     CAMERA_OVERLAY,
@@ -38,7 +39,7 @@ static BACK: Look = Look::new("back side", 26, [230, 60, 200, 150], 0.0).dots(Do
 /// A normal at a vertex.
 static NORMAL: Look = Look::new("normal", 27, [240, 160, 40, 230], 1.2);
 
-/// Every look, from bottom to top, but for those of surfaces, which lie over them.
+/// Every look, from bottom to top, but for those of surfaces and strokes, which lie over them.
 pub static LOOKS: &[&Look] = &[&GRID, &AXES[0], &AXES[1], &AXES[2], &FRUSTUM, &WIRE, &BACK, &NORMAL];
 
 /// At most so many strokes, or cells, of one overlay of one layer.
@@ -50,6 +51,11 @@ const LENGTH: f64 = 0.015;
 pub fn marks(synth: &Synth, view: &View, moment: &Moment) -> Vec<Mark> {
     let placed = synth.pose.at(synth.time(moment));
     let mut marks = synth.surface.marks(view, moment, &placed);
+    if let Some(ready) = synth.strokes.as_deref().filter(|_| strokes::overlays::is_shown(view)) {
+        let seen = frame::Seen::new(synth, moment);
+        let given = seen.given_alone();
+        marks.extend(given.into_iter().flat_map(|given| strokes::overlays::marks(ready, &given, view)));
+    }
     let shown = [WIRES, NORMALS, BACKS].map(|name| view.shows(name));
     let Some(eye) = moment.eye.filter(|_| shown.contains(&true)) else { return marks };
     let vertices = synth.mesh.vertices.par_iter();

@@ -49,9 +49,9 @@ pub static KIND: Kind = Kind {
     twins: &[plan::TWINS, surface::TWINS, strokes::upload::TWINS, strokes::emit::TWINS],
     bundle: Some(Bundle { names: bundle::names, write: bundle::write }),
     counted: &[],
-    overlays: &[marks::OVERLAYS, surface::OVERLAYS],
+    overlays: &[marks::OVERLAYS, surface::OVERLAYS, strokes::overlays::OVERLAYS],
     passes: &[strokes::passes::PASSES, surface::PASSES],
-    looks: &[marks::LOOKS, surface::LOOKS],
+    looks: &[marks::LOOKS, surface::LOOKS, strokes::overlays::LOOKS],
     template: Some(Template { of: List::Meshes, layer: template, ground: None }),
     blank: None,
     // A new mark needs no noise.

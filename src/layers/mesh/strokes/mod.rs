@@ -22,6 +22,7 @@ pub mod marks;
 pub mod measure;
 pub mod model;
 pub mod noise;
+pub mod overlays;
 pub mod passes;
 pub mod pieces;
 pub mod plan;
