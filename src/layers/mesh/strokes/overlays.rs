@@ -33,7 +33,7 @@ pub static OVERLAYS: &[Overlay] = &[
 ];
 
 /// An impulse.
-static IMPULSE: Look = Look::new("impulse", 28, [255, 90, 60, 255], 0.0).dots(Dot::Disc, 1.8);
+static IMPULSE: Look = Look::new("impulse", 28, [255, 90, 60, 255], 0.0).dots(Dot::Disc, 1.3);
 /// What the kernel of an impulse reaches.
 static KERNEL: Look = Look::new("kernel", 28, [255, 90, 60, 110], 1.0).dashed(3.0, 3.0);
 /// The way of a stroke.
