@@ -177,7 +177,7 @@ fn passes_show_what_the_drawing_is_made_from() {
 
 #[test]
 fn memory_is_asked_for_what_is_made_whole() {
-    let bytes = |strokes: Value, samples: u32| synth(&scene([40, 28], strokes, &[])).stroke_bytes(samples);
+    let bytes = |strokes: Value, samples: u32| render::stroke_bytes(&synth(&scene([40, 28], strokes, &[])), samples);
     assert_eq!(bytes(Value::Null, 3), 0);
     assert!(bytes(json!({}), 1) > 40 * 28 * 100 && bytes(json!({}), 3) == 9 * bytes(json!({}), 1));
 }

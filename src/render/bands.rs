@@ -7,8 +7,8 @@ use std::sync::Arc;
 
 use kurbo::Vec2;
 
+use super::made::Wholes;
 use super::stage::Stage;
-use super::whole::Wholes;
 use super::{Synth, cpu};
 use crate::base::pixels::{Frame, Grid, encode};
 use crate::base::problem::Problem;

@@ -3,9 +3,9 @@
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, PoisonError};
 
+use super::made::Kept;
 use super::reduce::reduced;
 use super::stage::{Group, Stage};
-use super::whole::Kept;
 use super::{Synth, cpu};
 use crate::base::pixels::{Linear, Rgba, side_by_side};
 use crate::base::reduce::Reduced;

@@ -6,8 +6,9 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::Synth;
+use super::made::{Kept, Wholes};
 use super::stage::{Group, Stage};
-use super::whole::{Kept, Surfaced, Wholes};
+use super::whole::Surfaced;
 use crate::base::pixels::{Frame, Grid, Linear, Rgba, encode_all, over};
 use crate::base::simd::vectorised;
 use crate::layers::parts::moment::{Columns, Moment};

@@ -1,7 +1,6 @@
 //! All layers together: the synthesis of a scene, and its frames on the CPU (the reference) and the GPU.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::DVec3;
 use kurbo::Vec2;
@@ -10,9 +9,7 @@ use crate::base::geometry::farther;
 use crate::base::problem::Problem;
 use crate::layers::Layer;
 use crate::layers::parts::materials::Materials;
-use crate::layers::parts::moment::Moment;
 use crate::layers::ready::{Making, Ready, Texture, Textures};
-use crate::layers::space::camera::Camera;
 use crate::layers::timeline::Timeline;
 use crate::scene::Scene;
 pub use crate::scene::sight::frame_size;
@@ -24,6 +21,7 @@ pub mod cpu;
 pub mod gpu;
 #[cfg(test)]
 mod inside;
+mod made;
 pub mod overlay;
 pub mod part;
 pub mod passes;
@@ -35,99 +33,11 @@ pub mod shown;
 pub mod stage;
 mod whole;
 
+pub use made::Synth;
+pub use whole::bytes as stroke_bytes;
+
+use made::Kept;
 use stage::Stage;
-use whole::Kept;
-
-/// Everything that a frame of a scene needs except the time.
-#[derive(Clone, Debug, Default)]
-pub struct Synth {
-    /// Width and height of a frame, in pixels.
-    pub size: (usize, usize),
-    /// The layers, in the scene's order.
-    pub layers: Vec<Arc<dyn Ready>>,
-    /// What they are shown in.
-    pub stage: Arc<Stage>,
-    /// Once it is set, frames are given up, with anything in them.
-    pub stop: Option<Arc<AtomicBool>>,
-    /// What was made whole of the last frame of which some pixels were wanted.
-    pub kept: Kept,
-}
-
-impl Synth {
-    /// What a frame at scene time `t` depends on besides the layers.
-    pub fn moment(&self, t: f64) -> Moment {
-        self.stage.moment(t, self.size)
-    }
-
-    /// What its layers do not show, as there was too little memory for it (`Materials::leaves_out`).
-    pub fn lacks(&self) -> Vec<Problem> {
-        let layers = self.layers.iter().enumerate();
-        layers.filter_map(|(i, layer)| Some(layer.lacks()?.under(&format!("/layers/{i}")))).collect()
-    }
-
-    /// Whether it has strokes.
-    pub fn has_strokes(&self) -> bool {
-        self.layers.iter().any(|layer| layer.has_strokes())
-    }
-
-    /// Why the CPU alone can draw it; `None` if a GPU can too.
-    pub fn by_cpu(&self) -> Option<&'static str> {
-        self.layers.iter().find_map(|layer| layer.by_cpu())
-    }
-
-    /// Whether the CPU takes long for a frame: one should not wait for it.
-    pub fn takes_long(&self) -> bool {
-        self.layers.iter().any(|layer| layer.takes_long())
-    }
-
-    /// Bytes that its strokes need while a frame is drawn, with so many samples a pixel in each direction.
-    pub fn stroke_bytes(&self, each_way: u32) -> u64 {
-        whole::bytes(self, each_way)
-    }
-
-    /// Whether its frames are given up.
-    pub fn is_stopped(&self) -> bool {
-        self.stop.as_ref().is_some_and(|stop| stop.load(Ordering::Relaxed))
-    }
-
-    /// The same, whose frames are given up once `stop` is set.
-    pub fn stoppable(&self, stop: &Arc<AtomicBool>) -> Synth {
-        let layer = |layer: &Arc<dyn Ready>| layer.stoppable(stop).unwrap_or_else(|| layer.clone());
-        Synth { layers: self.layers.iter().map(layer).collect(), stop: Some(stop.clone()), ..self.clone() }
-    }
-
-    /// The same, seen by another camera.
-    pub fn seen_from(&self, camera: Camera) -> Synth {
-        let stage = Stage { camera: Some(camera), ..(*self.stage).clone() };
-        Synth { stage: Arc::new(stage), ..self.clone() }
-    }
-
-    /// The same with so many births left out after each that is shown: see [`Moment::left_out`].
-    #[cfg(feature = "window")]
-    pub fn thinned(&self, left_out: u32) -> Synth {
-        let stage = Stage { left_out, ..(*self.stage).clone() };
-        Synth { stage: Arc::new(stage), ..self.clone() }
-    }
-
-    /// The same of a frame that is so many times larger on each side, with all samples of a pixel in pixels of their own; `None` if
-    /// something in it is of a fixed number of pixels: a layer in the frame, or sprites.
-    #[cfg(feature = "window")]
-    pub fn magnified(&self, by: u32) -> Option<Synth> {
-        let in_space = self.stage.groups.iter().all(|group| matches!(group, stage::Group::World(_)));
-        let fixed = !in_space || self.layers.iter().any(|layer| layer.has_sprites());
-        let stage = Stage { magnified: by, ..(*self.stage).clone() };
-        let size = (self.size.0 * by as usize, self.size.1 * by as usize);
-        (!fixed).then(|| Synth { size, stage: Arc::new(stage), ..self.clone() })
-    }
-
-    /// The same with nothing that moves.
-    pub fn unmoved(&self) -> Synth {
-        let camera = self.stage.camera.as_ref().map(|camera| camera.unmoved());
-        let stage = Stage { camera, ..(*self.stage).clone() };
-        let layers = self.layers.iter().map(|layer| layer.clone().unmoved()).collect();
-        Synth { layers, stage: Arc::new(stage), ..self.clone() }
-    }
-}
 
 /// Prepares a scene for rendering at any time. What it has in common with `previous` is reused.
 ///

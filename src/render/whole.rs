@@ -2,46 +2,16 @@
 //! for all samples of a pixel from one frame that is as many times larger.
 
 use std::borrow::Cow;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, PoisonError};
 
 use rayon::prelude::*;
 
-use super::Synth;
-use super::stage::{Group, Stage};
+use super::made::{Drawn, Kept, MadeOf, Slot, Synth, Whole, Wholes};
+use super::stage::Group;
 use crate::base::pixels::Rgba;
 use crate::layers::parts::moment::{Columns, Moment};
-use crate::layers::parts::pass::{COLOR, Pass, Which};
-use crate::layers::ready::{Ready, Still, Surfaces};
-
-/// The groups of a scene at one time that are made whole.
-#[derive(Debug)]
-pub struct Wholes {
-    /// How many samples a pixel has in each direction.
-    each_way: usize,
-    /// One for each group; `None` for those that are made row by row.
-    groups: Vec<Option<Whole>>,
-}
-
-/// What was made whole last, for those who want some pixels after others: of a frame, and of a pass.
-#[derive(Clone, Debug, Default)]
-pub struct Kept {
-    frame: Slot<Wholes>,
-    pass: Slot<Drawn>,
-}
-
-type Slot<T> = Arc<Mutex<Option<(MadeOf, Arc<T>)>>>;
-
-/// What of a pass is drawn on surfaces.
-#[derive(Debug)]
-pub struct Drawn {
-    pass: Pass,
-    of: Option<String>,
-    /// One for each group, all its pixels; `None` where nothing is drawn.
-    pub groups: Vec<Option<Vec<Rgba>>>,
-}
-
-/// The scene time, the stage and the layers.
-type MadeOf = (f64, Arc<Stage>, Vec<Arc<dyn Ready>>);
+use crate::layers::parts::pass::{COLOR, Which};
+use crate::layers::ready::{Still, Surfaces};
 
 impl Kept {
     /// What is made whole of one frame: as it is kept, or made now.
@@ -92,24 +62,10 @@ fn kept<T>(
 /// Colors, premultiplied, and how far away they are.
 pub type Surfaced<'a> = (Cow<'a, [Rgba]>, Cow<'a, [f64]>);
 
-/// All pixels of a group.
-#[derive(Debug)]
-pub struct Whole {
-    width: usize,
-    /// Their colors, premultiplied.
-    color: Vec<Rgba>,
-    /// How far away they are, in meters.
-    depth: Vec<f64>,
-    /// Which layer each is of.
-    layer: Vec<u32>,
-    /// Which part of it.
-    part: Vec<u32>,
-}
-
 /// Bytes that a pixel takes while it is drawn: what a layer hands out, a few noises, and the drawing.
 const PIXEL_BYTES: u64 = 160;
 
-/// Bytes that a frame needs for what is made whole, with so many samples a pixel in each direction.
+/// Bytes that the strokes of a scene need while a frame is drawn, with so many samples a pixel in each direction.
 pub fn bytes(synth: &Synth, each_way: u32) -> u64 {
     let pixels = synth.size.0 as u64 * synth.size.1 as u64 * u64::from(each_way) * u64::from(each_way);
     if synth.has_strokes() { pixels * PIXEL_BYTES } else { 0 }
@@ -226,6 +182,7 @@ mod tests {
     use crate::base::mesh::{Mesh, Vertex};
     use crate::layers::parts::materials::Materials;
     use crate::render::cpu;
+    use crate::render::stage::Stage;
     use crate::scene::Scene;
 
     fn synth(stop: Option<Arc<AtomicBool>>) -> Synth {

@@ -297,9 +297,7 @@ fn no_file_names_one_that_names_it() {
     let mut arrows: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
     for source in &sources {
         let to = source.paths().into_iter().filter_map(|(_, path)| map.leads_to(&source.path, &path));
-        // A folder's files are part of its `mod.rs`: they may use what it declares.
-        let above = |file: &&str| file.strip_suffix("mod.rs").is_some_and(|folder| source.path.starts_with(folder));
-        arrows.insert(&source.path, to.filter(|file| !above(file)).collect());
+        arrows.insert(&source.path, to.collect());
     }
     let broken: Vec<String> = circles(&arrows).iter().map(|circle| circle.join(" <- ")).collect();
     report("no circle of files", &broken);

@@ -4,8 +4,9 @@
 
 use std::io::ErrorKind;
 
-use super::{Kind, Session};
+use super::open::Session;
 use crate::base::error::{Error, Result};
+use crate::files::journal::Kind;
 use crate::files::{hash, now_ms, paths, scene, through};
 use crate::scene::history::{Applied, Stamp};
 use crate::scene::merge::{Merged, Side, merge};

@@ -1,25 +1,26 @@
 //! `plica render`: frames to numbered files, to one animation, or to another program.
 
+mod args;
 mod pass;
 
-use std::path::{Path, PathBuf};
+pub use args::Args;
+
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
+use args::{Numbered, frame_bytes, numbered};
+
 use super::demo::quoted;
+use super::opened::{Opened, Unloaded};
 use super::watched::watched;
-use super::writing::{Counting, Replacing};
-use super::{
-    Context, Progress,
-    opened::{Opened, Unloaded},
-    scene_options::SceneOptions,
-};
+use super::writing::Counting;
+use super::{Context, Progress};
 use crate::base::budget::Share;
 use crate::base::error::{Error, Result};
-use crate::base::pixels::{Frame, Linear, Rgba, side_by_side};
+use crate::base::pixels::{Frame, Linear, side_by_side};
 use crate::base::problem::Problem;
-use crate::export::animation::formats::{kept, table};
 use crate::export::animation::matrix::Matrix;
 use crate::export::animation::{Show, Target, range, rate::Rate, scale};
 use crate::files::outputs::{self, Place};
@@ -27,70 +28,7 @@ use crate::layers::parts::materials::Materials;
 use crate::layers::timeline::{Timeline, Wrap};
 use crate::render::bands::Bands;
 use crate::render::{Synth, cpu, seams};
-use crate::scene::{Scene, address, compared};
-
-/// Render frames to numbered files, an animation or a stream
-#[derive(clap::Args)]
-#[command(after_help = outputs_help())]
-pub struct Args {
-    /// The scene; - is standard input
-    scene: PathBuf,
-    /// Where to: the extension names the format, %04d numbers files, - is standard output
-    #[arg(short, long, value_name = "OUT")]
-    output: PathBuf,
-    /// Which frames, for example 0,5,10-20:2 or 20-10 [default: all]
-    #[arg(long, value_name = "RANGE", allow_hyphen_values = true)]
-    frames: Option<String>,
-    /// Number the files N, N+1, ... in the order of the frames, not as the scene numbers them
-    #[arg(long, value_name = "N")]
-    start_number: Option<u32>,
-    /// Skip numbered files that exist already, complete and of the right size
-    #[arg(long)]
-    skip_existing: bool,
-    /// Scale finished frames; 0 for one side keeps the aspect ratio
-    #[arg(long, value_name = "WxH", allow_hyphen_values = true)]
-    size: Option<String>,
-    /// Render what frames are made from, to .exr files (or .png, to look at); NAME:LAYER renders one layer only
-    #[arg(long, value_name = "NAME")]
-    pass: Option<String>,
-    /// Render what is drawn on meshes with each anchor, or in each style, side by side
-    #[arg(long, value_name = "BY", value_parser = compared::names(), conflicts_with = "pass")]
-    compare: Option<String>,
-    /// N x N samples per pixel, at most 16 x 16: smooth edges of folds and meshes
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=16))]
-    samples: u32,
-    /// Draw with the GPU instead of the reference renderer
-    #[arg(long)]
-    gpu: bool,
-    /// Format on standard output: y4m or rgba
-    #[arg(long)]
-    format: Option<String>,
-    /// Matrix of y4m and video [default: bt709 from 720 lines up, bt601 below, as players assume]
-    #[arg(long, value_name = "NAME", value_parser = Matrix::NAMES)]
-    matrix: Option<String>,
-    #[command(flatten)]
-    replacing: Replacing,
-    #[command(flatten)]
-    options: SceneOptions,
-}
-
-fn outputs_help() -> String {
-    format!(
-        "Outputs:\n{}\n  -         y4m or rgba for another program, by --format\n\nWhat they keep:\n{}\n\nPasses:\n{}\n\n{LINE}",
-        table(),
-        kept(),
-        crate::render::passes::table()
-    )
-}
-
-const LINE: &str = "Video by a line of your own (from 720 lines on; below them smpte170m in the place of bt709, twice):
-  plica render SCENE -o - --format y4m | ffmpeg -i pipe:0 \\
-    -vf format=yuv420p,setparams=colorspace=bt709:color_primaries=bt709:color_trc=iec61966-2-1:range=tv \\
-    -colorspace bt709 -color_primaries bt709 -color_trc iec61966-2-1 -color_range tv \\
-    -c:v libx264 -crf 16 out.mp4";
-
-/// A frame of the scene, and the number of its file.
-type Numbered = (u64, u64);
+use crate::scene::{Scene, address};
 
 /// Renders the frames.
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
@@ -185,14 +123,6 @@ fn write(
     Ok(())
 }
 
-fn numbered(args: &Args, frames: &[u64]) -> Vec<Numbered> {
-    let number = |(at, &frame): (usize, &u64)| match args.start_number {
-        Some(first) => (frame, u64::from(first) + at as u64),
-        None => (frame, frame),
-    };
-    frames.iter().enumerate().map(number).collect()
-}
-
 fn target(
     args: &Args,
     read: &Unloaded,
@@ -275,22 +205,6 @@ fn command(args: &Args) -> String {
     words.chain(args.gpu.then(|| " --gpu".to_owned())).collect()
 }
 
-/// Bytes that a frame of `own` size takes while it is rendered and scaled to `size`: as light and as color codes.
-fn frame_bytes(own: (usize, usize), size: (usize, usize), samples: usize, band: usize) -> u64 {
-    const LIGHT: u64 = size_of::<Rgba>() as u64;
-    const COLORS: u64 = size_of::<[u8; 4]>() as u64;
-    let pixels = |(width, height): (usize, usize)| width as u64 * height as u64;
-    // The mean of several samples is summed up beside the sample being rendered.
-    let copies = if samples > 1 { 2 } else { 1 };
-    if own == size {
-        // Only a few rows are in memory as light.
-        let band = (band.max(own.0) as u64).min(pixels(own));
-        return pixels(own) * COLORS + band * LIGHT * copies;
-    }
-    // Scaling needs copies of both.
-    pixels(own) * (copies + 1) * LIGHT + pixels(size) * (2 * LIGHT + COLORS)
-}
-
 /// That there is not the memory for a frame of a scene beside its `materials`; or the memory, as it is taken for every frame.
 pub fn room(scene: &Scene, materials: &Materials) -> std::result::Result<Share, Problem> {
     let size = crate::render::frame_size(scene, materials);
@@ -333,7 +247,7 @@ impl<'a> Renderer<'a> {
         };
         let pictures = bands.as_ref().map(Bands::pictures);
         let first = samples.first().or(pictures.as_ref());
-        let strokes = first.map_or(0, |synth| synth.stroke_bytes(args.samples));
+        let strokes = first.map_or(0, |synth| crate::render::stroke_bytes(synth, args.samples));
         let share = share.and(opened.materials.budget.take(strokes, place)?);
         #[cfg(not(feature = "window"))]
         if args.gpu {

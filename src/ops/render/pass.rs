@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::{Args, Numbered, frame_bytes, numbered};
+use super::args::{Args, Numbered, frame_bytes, numbered};
 use crate::base::error::{Error, Result};
 use crate::base::pixels::{Frame, Linear};
 use crate::export::animation::range;
@@ -47,7 +47,7 @@ pub fn run(args: &Args, context: &mut Context) -> Result<()> {
     let band = size.0 * size.1;
     let _share = opened.materials.budget.take(2 * frame_bytes(size, size, each_way as usize, band), "frames")?;
     let samples = made(&opened, each_way, *asked.pass != COLOR && files.are_numbers())?;
-    let strokes = samples.first().map_or(0, |synth| synth.stroke_bytes(each_way));
+    let strokes = samples.first().map_or(0, |synth| render::stroke_bytes(synth, each_way));
     let _strokes = opened.materials.budget.take(strokes, "frames")?;
     let samples: Vec<Synth> = samples.iter().map(|synth| asked.only(synth)).collect();
     for (i, &(frame, number)) in todo.iter().enumerate() {

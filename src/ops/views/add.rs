@@ -17,6 +17,9 @@ use crate::ops::{Context, set};
 use crate::scene::Document;
 use crate::scene::shots::{self, Image, Picture};
 
+/// What a view can feed, in the document's words.
+pub const KINDS: [&str; 3] = ["both", "independent", "dependent"];
+
 #[derive(clap::Args)]
 pub struct Args {
     /// What the view is called
@@ -39,7 +42,7 @@ pub struct Args {
     #[arg(long, value_name = "DEGREES")]
     fov: Option<f64>,
     /// What the view feeds
-    #[arg(long, value_name = "KIND", value_parser = super::KINDS)]
+    #[arg(long, value_name = "KIND", value_parser = KINDS)]
     kind: Option<String>,
     #[command(flatten)]
     recovery: RecoveryOptions,

@@ -7,8 +7,9 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec3};
 use glob::Pattern;
 
+use super::add::KINDS;
 use super::beside::Beside;
-use super::feather;
+use super::{feather, table};
 use crate::base::error::{Error, Result};
 use crate::base::mesh::Mesh;
 use crate::base::problem::{Problem, quoted};
@@ -34,7 +35,7 @@ pub struct Args {
     #[arg(long, value_name = "DIR")]
     images: Option<PathBuf>,
     /// What the views feed
-    #[arg(long, value_name = "KIND", value_parser = super::KINDS)]
+    #[arg(long, value_name = "KIND", value_parser = KINDS)]
     kind: Option<String>,
     /// Take every Nth picture only
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
@@ -175,7 +176,7 @@ fn edit(
 fn odd(document: &Document, layer: usize, mesh: Mesh) -> Vec<Problem> {
     let Some((name, _)) = shots::mesh_of(document, layer) else { return Vec::new() };
     let meshes = [(name.to_owned(), Arc::new(mesh))].into();
-    super::odd(document.scene(), layer, &Materials { meshes, ..Materials::default() })
+    table::odd(document.scene(), layer, &Materials { meshes, ..Materials::default() })
 }
 
 fn shot_of(picture: &Picture) -> Option<Shot> {

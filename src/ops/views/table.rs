@@ -1,19 +1,43 @@
 //! `plica views SCENE`: what the views of a scene tell its view maps.
 
+use std::path::PathBuf;
+
 use serde_json::{Value, json};
 
-use super::Args;
 use crate::base::error::{Error, Result};
+use crate::base::problem::Problem;
 use crate::base::text::short;
+use crate::layers::parts::materials::Materials;
 use crate::ops::Context;
 use crate::ops::opened::Opened;
+use crate::ops::scene_options::SceneOptions;
 use crate::ops::sprites::none;
+use crate::scene::Scene;
+
+/// What is listed.
+#[derive(clap::Args)]
+pub struct Listing {
+    /// The scene; - is standard input
+    #[arg(required = true)]
+    scene: Option<PathBuf>,
+    /// Name of the layer [default: all with views]
+    #[arg(long, value_name = "LAYER")]
+    layer: Option<String>,
+    /// Print one JSON object per line: the views, then the map
+    #[arg(long)]
+    json: bool,
+    /// Draw each view again from its own camera, and tell how well it comes back
+    #[arg(long)]
+    compare: bool,
+    #[command(flatten)]
+    options: SceneOptions,
+}
 
 /// A view that comes back so many dB worse than the median is probably not seen from where its camera says.
 const OFF_DB: f64 = 6.0;
 
 /// Prints the table or the lines.
-pub fn run(args: &Args, context: &mut Context) -> Result<()> {
+pub fn run(args: &Listing, context: &mut Context) -> Result<()> {
     let scene = args.scene.as_ref().ok_or_else(|| Error::Usage("name a scene".into()))?;
     let opened = Opened::new(scene, &args.options, context)?;
     let scene = opened.document.scene();
@@ -35,10 +59,16 @@ pub fn run(args: &Args, context: &mut Context) -> Result<()> {
             context.print(if args.json { line(name, row) } else { words(row, width) })?;
         }
         off(&rows).for_each(|told| context.messages.say(&told));
-        let odd = super::odd(scene, layer, &opened.materials);
+        let odd = odd(scene, layer, &opened.materials);
         odd.iter().for_each(|problem| context.messages.say(&problem.to_string()));
     }
     if any { Ok(()) } else { Err(none(scene, args.layer.as_deref(), "views")) }
+}
+
+/// What is odd about how pictures lie on a layer, as far as the files that it names tell.
+pub fn odd(scene: &Scene, layer: usize, materials: &Materials) -> Vec<Problem> {
+    let odd = scene.layers.get(layer).map(|layer| layer.technique().check_lying(materials));
+    odd.unwrap_or_default().into_iter().map(|problem| problem.under(&format!("/layers/{layer}"))).collect()
 }
 
 fn line(layer: &str, row: &Value) -> String {

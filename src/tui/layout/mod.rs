@@ -7,6 +7,7 @@ use super::state::{Mode, Pane, State};
 
 pub mod lesson;
 pub mod picture;
+pub mod sketch;
 
 /// From this width on there are panes on the right.
 const WIDE: u16 = 112;
@@ -63,7 +64,7 @@ pub fn areas(screen: Rect, state: &State) -> Areas {
         let (sketch, picture) = halves.map_or((None, right), |[sketch, picture]| (Some(sketch), Some(picture)));
         return Areas { tree, table, detail, plots: None, sketch, picture, status, line };
     };
-    let sketch = picture::sketch(state).map(|_| field.union(position));
+    let sketch = sketch::sketch(state).map(|_| field.union(position));
     let picture = stacked.map(|[.., picture]| picture);
     Areas { tree, table, detail, plots: plots.filter(|_| sketch.is_none()), sketch, picture, status, line }
 }

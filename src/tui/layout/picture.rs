@@ -6,7 +6,6 @@ use kurbo::Point;
 
 use std::collections::BTreeSet;
 
-use crate::base::pointer::Pointer;
 use crate::layers::parts::marks::{Overlay, View, When};
 use crate::layers::parts::sketch::Sketch;
 use crate::render::overlay;
@@ -30,16 +29,9 @@ pub fn request(state: &State) -> Request {
 /// The pass that the curve which is shown is over, if one is.
 pub fn count_at(state: &State) -> Option<CountAt> {
     layout::areas_of(state).sketch?;
-    let (layer, sketch) = sketch(state)?;
+    let (layer, sketch) = layout::sketch::sketch(state)?;
     let Sketch::Curve(curve) = sketch else { return None };
     Some(CountAt { of: Asked { pass: curve.over, of: None, layer: Some(layer) }, time: state.play.time })
-}
-
-/// The small drawing of what is selected, and the index of its layer.
-pub fn sketch(state: &State) -> Option<(usize, Sketch)> {
-    let focused = state.focused();
-    let (layer, path) = Pointer(&focused).item_of("/layers")?;
-    Some((layer, state.document().scene().layers.get(layer)?.technique().sketch(path)?))
 }
 
 /// The pixel under the cursor, if its read-out is open.

@@ -10,7 +10,7 @@ use super::write;
 use crate::layers::parts::sketch::{Curve, Patch, Sketch};
 use crate::tui::document::tree;
 use crate::tui::graphics::counts::PARTS;
-use crate::tui::layout::picture;
+use crate::tui::layout::{picture, sketch};
 use crate::tui::state::State;
 use crate::tui::text::color::{self, Depth};
 use crate::tui::text::numbers::short;
@@ -24,7 +24,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
     if area.height < 3 || area.width < 12 {
         return;
     }
-    match picture::sketch(state) {
+    match sketch::sketch(state) {
         Some((_, Sketch::Patch(patch))) => draw_patch(&patch, state.depth, area, buffer),
         Some((_, Sketch::Curve(curve))) => draw_curve(state, &curve, area, buffer),
         None => drop(write(buffer, area, 1, 0, &nothing(state), color::faint())),
