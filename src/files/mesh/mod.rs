@@ -14,11 +14,13 @@ use crate::layers::parts::materials::List;
 
 mod gltf;
 mod input;
+mod looks;
 mod obj;
 #[cfg(test)]
 mod tests;
 
 pub use input::Opener;
+pub use looks::Looks;
 
 use gltf::With;
 
@@ -98,17 +100,6 @@ pub fn pictures(file: File, place: &str, options: &Options) -> Result<Vec<String
         Format::Obj => Ok(Vec::new()),
         Format::Gltf => gltf::named(&bytes, With { place, limits, budget, sibling: &alone, outside: *outside }),
     }
-}
-
-/// What the materials of a model say of its looks, as far as a layer can have it.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Looks {
-    /// The color of the material that is shown: sRGB, with straight alpha where it is blended.
-    pub color: Option<String>,
-    /// Whether both sides of triangles are meant to be seen.
-    pub both_sides: bool,
-    /// The materials that are not shown, in words.
-    pub left_out: Vec<String>,
 }
 
 /// The looks of the model in an open file. An OBJ names its materials in another file, which is not read.

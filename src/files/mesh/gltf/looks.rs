@@ -5,7 +5,7 @@ use super::pictures::{base_color, primitives};
 use super::source::{Source, With};
 use crate::base::error::Result;
 use crate::base::problem::quoted;
-use crate::files::mesh::Looks;
+use crate::files::mesh::looks::Looks;
 
 /// The looks of the first material that has a picture, or else of the first one.
 pub(in crate::files::mesh) fn looks(bytes: &[u8], with: With) -> Result<Looks> {
