@@ -4,6 +4,7 @@
 use glam::DVec3;
 
 use super::view::{Extremes, View};
+use crate::base::simd::vectorised;
 
 /// The cosine beyond which two views look the same way.
 const SAME_WAY: f64 = 0.99985;
@@ -14,11 +15,20 @@ const LEAST: f64 = 1e-3;
 /// How near to the middle of a view there is no way to its limit.
 const MIDDLE: f64 = 1e-9;
 
+/// How many views are looked at together.
+const LANES: usize = 8;
+
+/// One number for each of some views.
+type Lanes = [f64; LANES];
+
 /// What is known of all views at a place.
-#[derive(Debug, Default)]
-pub struct Gauges {
-    /// Unit vectors to the cameras of the views, and their cosines with the way to the eye.
-    ways: Vec<[f64; 4]>,
+#[derive(Debug)]
+pub struct Gauges<'a> {
+    views: &'a [View],
+    /// Where the cameras of the views are that depend on the direction; of others it is not a number, nor is anything below.
+    cameras: Vec<[Lanes; 3]>,
+    /// Unit vectors to them, and their cosines with the way to the eye.
+    ways: Vec<[Lanes; 4]>,
     /// The views that may count.
     near: Vec<Near>,
     /// The views that limit them, each with how far the way to that limit the eye is where it tells the cell everything.
@@ -36,47 +46,69 @@ pub struct Near {
     limits: [u32; 2],
 }
 
-impl Gauges {
-    /// Finds what is known at `place` (of the model) when it is looked at from `eye`, a unit vector away from it.
-    pub fn set(&mut self, views: &[View], place: DVec3, eye: DVec3) {
-        self.ways.clear();
-        self.ways.extend(views.iter().map(|view| {
-            let way = view.camera.position - place;
-            let way = way * (1.0 / way.length());
-            [way.x, way.y, way.z, way.dot(eye)]
-        }));
-        self.near.clear();
-        self.limits.clear();
-        for (number, view) in views.iter().enumerate().filter(|(_, view)| view.dependent) {
-            let [x, y, z, along] = self.ways[number];
-            if along <= BEHIND {
-                continue;
+impl<'a> Gauges<'a> {
+    /// What is known of these views.
+    pub fn new(views: &'a [View]) -> Gauges<'a> {
+        let lump = |views: &[View]| {
+            let mut lump = [[f64::NAN; LANES]; 3];
+            for (k, view) in views.iter().enumerate().filter(|(_, view)| view.dependent) {
+                lump.iter_mut().zip(view.camera.position.to_array()).for_each(|(lanes, at)| lanes[k] = at);
             }
-            let (gauge, limited) = match &view.extremes {
-                Extremes::Auto(reach) => (cone(along, *reach), true),
-                Extremes::Cone(reach) => (cone(along, *reach), false),
-                Extremes::Points(places) => (polygon(DVec3::new(x, y, z), place, eye, places), false),
-            };
-            if gauge < 1.0 {
-                let first = self.limits.len();
-                if limited {
-                    self.limit(views, number, gauge);
-                }
-                let limits = [first, self.limits.len()].map(|at| at as u32);
-                self.near.push(Near { view: number, gauge, limits });
-            }
-        }
+            lump
+        };
+        let cameras: Vec<_> = views.chunks(LANES).map(lump).collect();
+        let ways = vec![[[f64::NAN; LANES]; 4]; cameras.len()];
+        Gauges { views, cameras, ways, near: Vec::new(), limits: Vec::new() }
     }
 
-    /// Adds the views that limit one to less than it is; the nearest is the first.
-    fn limit(&mut self, views: &[View], number: usize, gauge: f64) {
-        let (first, [x, y, z, along]) = (self.limits.len(), self.ways[number]);
-        for (view, (other, own)) in self.ways.iter().zip(views).enumerate() {
-            let between = other[0] * x + other[1] * y + other[2] * z;
-            let across = other[3] - along * between;
-            let whole = (1.0 + along) * (1.0 - between);
-            if own.dependent && between <= SAME_WAY && across > gauge * whole {
-                self.limits.push((view as u32, across / whole));
+    /// Finds what is known at `place` (of the model) when it is looked at from `eye`, a unit vector away from it.
+    pub fn set(&mut self, place: DVec3, eye: DVec3) {
+        vectorised(
+            #[inline(always)]
+            || {
+                for (way, camera) in self.ways.iter_mut().zip(&self.cameras) {
+                    *way = ways(camera, place, eye);
+                }
+                self.near.clear();
+                self.limits.clear();
+                for (number, view) in self.views.iter().enumerate().filter(|(_, view)| view.dependent) {
+                    let way = self.ways[number / LANES].map(|lanes| lanes[number % LANES]);
+                    let [x, y, z, along] = way;
+                    if along <= BEHIND {
+                        continue;
+                    }
+                    let (gauge, limited) = match &view.extremes {
+                        Extremes::Auto(reach) => (cone(along, *reach), true),
+                        Extremes::Cone(reach) => (cone(along, *reach), false),
+                        Extremes::Points(places) => (polygon(DVec3::new(x, y, z), place, eye, places), false),
+                    };
+                    if gauge < 1.0 {
+                        let first = self.limits.len();
+                        if limited {
+                            self.limit(way, gauge);
+                        }
+                        let limits = [first, self.limits.len()].map(|at| at as u32);
+                        self.near.push(Near { view: number, gauge, limits });
+                    }
+                }
+            },
+        );
+    }
+
+    /// Adds the views that limit one, to which this is the way, to less than it is; the nearest is the first.
+    #[inline(always)]
+    fn limit(&mut self, [x, y, z, along]: [f64; 4], gauge: f64) {
+        let first = self.limits.len();
+        for (lump, other) in self.ways.iter().enumerate() {
+            let (mut across, mut whole, mut is) = ([0.0; LANES], [0.0; LANES], [false; LANES]);
+            for k in 0..LANES {
+                let between = other[0][k] * x + other[1][k] * y + other[2][k] * z;
+                across[k] = other[3][k] - along * between;
+                whole[k] = (1.0 + along) * (1.0 - between);
+                is[k] = between <= SAME_WAY && across[k] > gauge * whole[k];
+            }
+            for k in (0..LANES).filter(|k| is[*k]) {
+                self.limits.push(((lump * LANES + k) as u32, across[k] / whole[k]));
             }
         }
         let limits = &mut self.limits[first..];
@@ -107,6 +139,20 @@ impl Gauges {
         }
         gauge
     }
+}
+
+/// The unit vectors from a place to some cameras, and their cosines with the way to the eye.
+#[inline(always)]
+fn ways(cameras: &[Lanes; 3], place: DVec3, eye: DVec3) -> [Lanes; 4] {
+    let mut found = [[0.0; LANES]; 4];
+    for k in 0..LANES {
+        let [x, y, z] = [cameras[0][k] - place.x, cameras[1][k] - place.y, cameras[2][k] - place.z];
+        let scale = 1.0 / (x * x + y * y + z * z).sqrt();
+        let [x, y, z] = [x * scale, y * scale, z * scale];
+        (found[0][k], found[1][k], found[2][k]) = (x, y, z);
+        found[3][k] = x * eye.x + y * eye.y + z * eye.z;
+    }
+    found
 }
 
 /// How far the way to an angle is whose half has this tangent.

@@ -147,13 +147,13 @@ fn around(views: &[View], number: usize, share: f64) -> Vec<Option<DVec3>> {
     let [right, ..] = view.camera.axes();
     let right = (right - front * right.dot(front)).normalize_or_zero();
     let up = front.cross(right);
-    let mut gauges = Gauges::default();
+    let mut gauges = Gauges::new(views);
     let place = |i: usize| {
         let angle = TAU * i as f64 / ROUND as f64;
         let aside = right * cos(angle) + up * sin(angle);
         // Stereographic from behind the view, as gauges are.
         let way = |far: f64| (front * (1.0 - far * far) + aside * (2.0 * far)) / (1.0 + far * far);
-        gauges.set(views, view.target, way(ASIDE));
+        gauges.set(view.target, way(ASIDE));
         let near = gauges.near().iter().find(|near| near.view == number)?;
         let gauge = gauges.gauge(near, |_| 1.0);
         (gauge > 0.0).then(|| view.target + radius * way(share * ASIDE / gauge))

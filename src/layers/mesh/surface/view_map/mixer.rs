@@ -10,7 +10,7 @@ use super::mix::{Part, mix};
 /// Mixes views at one place after the other.
 pub struct Mixer<'a> {
     map: &'a Map,
-    gauges: Gauges,
+    gauges: Gauges<'a>,
     /// Where in the list of a cell each view is.
     places: Vec<u32>,
     parts: Vec<Part>,
@@ -19,13 +19,18 @@ pub struct Mixer<'a> {
 impl<'a> Mixer<'a> {
     /// Mixes the views of a map.
     pub fn new(map: &'a Map) -> Mixer<'a> {
-        Mixer { map, gauges: Gauges::default(), places: vec![NONE; map.wanted.views.len()], parts: Vec::new() }
+        Mixer {
+            map,
+            gauges: Gauges::new(&map.wanted.views),
+            places: vec![NONE; map.wanted.views.len()],
+            parts: Vec::new(),
+        }
     }
 
     /// From now on cells are looked at from `eye`, a unit vector away from `place`.
     #[inline]
     pub fn look(&mut self, place: DVec3, eye: DVec3) {
-        self.gauges.set(&self.map.wanted.views, place, eye);
+        self.gauges.set(place, eye);
     }
 
     /// Mixes what views tell a cell: the color times its opacity, and that. `each` is told the share of each view.

@@ -189,8 +189,8 @@ fn views_of_other_depths_share_a_layer() {
 fn a_view_counts_up_to_its_limits() {
     let turned = |degrees: f64| DVec3::new(sin(degrees.to_radians()), 0.0, cos(degrees.to_radians()));
     let gauge = |views: &[View], eye: DVec3| {
-        let mut gauges = Gauges::default();
-        gauges.set(views, DVec3::ZERO, eye);
+        let mut gauges = Gauges::new(views);
+        gauges.set(DVec3::ZERO, eye);
         let near = gauges.near().iter().find(|near| near.view == 0);
         near.map(|near| gauges.gauge(near, |_| 1.0))
     };
