@@ -119,7 +119,7 @@ fn what_is_no_pass_says_what_there_is() {
     for (line, what) in [
         ("--pass dept -o a.exr", "there is no pass \"dept\" (did you mean \"depth\"?)"),
         ("--pass depth:fra -o a.exr", "there is no layer \"fra\" (did you mean \"far\"?)"),
-        ("--pass depth -o a.gif", "a pass is written as .exr or, to look at, .png"),
+        ("--pass depth -o a.gif", "a pass is written as .exr or, to look at, .png (as -o a-%04d.exr)"),
         ("--pass depth -o a.exr", "2 frames do not fit one file"),
         ("--pass depth --gpu -o a-%d.exr", "--gpu is not for passes"),
         ("--pass depth -o a-%d.jpg", "a pass is written as .exr or, to look at, .png"),

@@ -118,3 +118,51 @@ pub fn lines(synth: &Synth, pieces: &[Piece], places: &[Vec<f64>; 2], depth: &mu
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::super::frame::Seen;
+    use super::super::model::WaterfallLayer;
+    use super::super::sprites::Source;
+    use super::*;
+    use crate::base::clip::Clip;
+    use crate::base::picture::Picture;
+    use crate::layers::parts::materials::Materials;
+    use crate::layers::parts::moment::{Columns, Moment};
+    use crate::layers::ready::{Making, Still};
+    use crate::layers::space::camera::Camera;
+    use crate::layers::timeline::Wrap;
+
+    #[test]
+    fn passes_are_the_same_where_nothing_is_cut_out_of_the_clip_for_them() {
+        let layer = r#"{ "name": "f", "clip": "c", "lines": 24,
+            "sprites": { "size": 16, "keys": 1, "picks": [{ "frame": 0, "at": [16, 16], "track": false }] } }"#;
+        let layer: WaterfallLayer = serde_json::from_str(layer).unwrap();
+        let frames = vec![Arc::new(Picture::filled(32, 32, [1.0; 4])); 2];
+        let clip = Arc::new(Clip { fps: 25.0, frames });
+        let materials = Materials { clips: [("c".to_owned(), clip)].into(), ..Materials::default() };
+        let making = Making::plain(Wrap::Repeat, &materials);
+        let [whole, bare] =
+            [true, false].map(|painted| Synth::new(&layer, &Making { painted, ..making }, None).unwrap());
+        assert_eq!([&whole, &bare].map(|synth| synth.pictures.tracks[0].source), [Source::Pick, Source::Auto]);
+        let size_px = (64, 40);
+        let eye = Some(Camera::default().at(0.3, size_px));
+        let moment = Moment { t: 0.3, size_px, eye, left_out: 0, magnified: 1 };
+        for pass in [LINES, SPRITES] {
+            let rows = |synth: &Synth| {
+                let seen = Seen::new(synth, &moment);
+                let row = |y: usize| {
+                    let (mut depth, mut out) = (vec![f64::INFINITY; 64], vec![[0.0; 4]; 64]);
+                    seen.pass(&pass, y, Columns::All, &mut depth, &mut out);
+                    out
+                };
+                (0..40).map(row).collect::<Vec<_>>()
+            };
+            let found = rows(&bare);
+            assert!(found.iter().flatten().filter(|cell| cell[0] > 0.0).count() > 100, "{pass:?}");
+            assert_eq!(found, rows(&whole), "{pass:?}");
+        }
+    }
+}

@@ -58,10 +58,12 @@ pub fn draw(canvas: &mut Canvas, state: &State, letters: &Letters) {
     let height = TEXT_PX * scale;
     let y = area.height + (BAR_PX - 7.0 - TEXT_PX) * scale;
     sign(canvas, state.transport.playing, Point::new(rail.x0, y), height);
-    let Row { times, times_at, said, color, said_at, room, right, right_at } = row(state, letters);
+    let row = row(state, letters);
+    let is_above = row.is_above(state, letters);
+    let Row { times, times_at, said, color, said_at, room, right, right_at } = row;
     canvas.text(&letters.line(&times, height), Point::new(times_at, y), TEXT);
     canvas.text(&letters.line(&right, height), Point::new(right_at, y), DIM);
-    if room > 2.0 * height {
+    if room > 2.0 * height && !is_above {
         canvas.text(&letters.within(&said, height, room), Point::new(said_at, y), color);
     }
 }
@@ -93,15 +95,24 @@ fn row(state: &State, letters: &Letters) -> Row {
     Row { times, times_at, said, color, said_at, room: right_at - said_at - gap, right, right_at }
 }
 
-/// Draws a message of which the bar has room for the beginning only, all of it on as many lines as it takes, at the bottom of
-/// what is `free` of the area; returns what is free then. What is being done is told in few words, and changes.
+impl Row {
+    /// Whether what is said is a message that the bar has no room for. What is being done is told in few words, and changes.
+    fn is_above(&self, state: &State, letters: &Letters) -> bool {
+        let messages = [&state.words.told, &state.no_pass];
+        let is_message = self.color == WARNING || messages.iter().any(|one| one.as_ref() == Some(&self.said));
+        is_message && letters.width(&self.said, TEXT_PX * state.scale) > self.room
+    }
+}
+
+/// Draws a message that the bar has no room for, on as many lines as it takes, at the bottom of what is `free` of the area;
+/// returns what is free then.
 pub fn whole(canvas: &mut Canvas, state: &State, letters: &Letters, free: Rect) -> Rect {
-    let Row { said, color, room, .. } = row(state, letters);
-    let is_message = color == WARNING || [&state.words.told, &state.no_pass].contains(&&Some(said.clone()));
-    let [margin, height] = [MARGIN_PX, TEXT_PX].map(|length| length * state.scale);
-    if !is_message || letters.width(&said, height) <= room {
+    let row = row(state, letters);
+    if !row.is_above(state, letters) {
         return free;
     }
+    let Row { said, color, .. } = row;
+    let [margin, height] = [MARGIN_PX, TEXT_PX].map(|length| length * state.scale);
     let text = letters.wrapped(&said, height, (free.width() - 2.0 * margin).max(4.0 * height));
     let top = (free.y1 - text.height() - 2.0 * margin).max(free.y0).round();
     canvas.rect(Rect { y0: top, ..free }, 0.0, PANEL);

@@ -413,3 +413,23 @@ fn triples_have_x_y_and_z_and_sizes_are_whole() {
     let after = document.apply(&Edit::set(&document, "/size/0", 200.into())).unwrap();
     assert_eq!(after.json()["size"], json!([200, 720]));
 }
+
+#[test]
+fn what_keys_of_the_camera_rule_is_told_when_it_is_set() {
+    let scene = r#"{ "plica": 1, "layers": [], "camera": { "keys": [{ "at": 0, "position": [0, 1, 4] }, { "at": 1, "fov": 30 }] } }"#;
+    let document = Document::parse(scene).unwrap();
+    for (path, value, ruled) in [
+        ("/camera/position", json!([1, 2, 3]), Some("position")),
+        ("/camera/position/0", json!(1), Some("position")),
+        ("/camera/fov", json!(20), Some("fov")),
+        ("/camera/target", json!([0, 0, 0]), None),
+        ("/camera/turn", json!(90), None),
+        ("/camera", json!({}), None),
+    ] {
+        let told = Edit::set(&document, path, value).overruled(&document);
+        let expected =
+            ruled.map(|field| format!("the camera's keys rule its {field}, so this is not seen (:camera key"));
+        assert_eq!(told.is_some(), expected.is_some(), "{path}: {told:?}");
+        assert!(told.unwrap_or_default().starts_with(&expected.unwrap_or_default()), "{path}");
+    }
+}
