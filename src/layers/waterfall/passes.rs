@@ -140,8 +140,8 @@ mod tests {
         let layer = r#"{ "name": "f", "clip": "c", "lines": 24,
             "sprites": { "size": 16, "keys": 1, "picks": [{ "frame": 0, "at": [16, 16], "track": false }] } }"#;
         let layer: WaterfallLayer = serde_json::from_str(layer).unwrap();
-        let frames = vec![Arc::new(Picture::filled(32, 32, [1.0; 4])); 2];
-        let clip = Arc::new(Clip { fps: 25.0, frames });
+        let frame = Arc::new(Picture::filled(32, 32, [1.0; 4]));
+        let clip = Arc::new(Clip { fps: 25.0, frames: vec![frame; 2] });
         let materials = Materials { clips: [("c".to_owned(), clip)].into(), ..Materials::default() };
         let making = Making::plain(Wrap::Repeat, &materials);
         let [whole, bare] =
