@@ -33,13 +33,13 @@ pub static OVERLAYS: &[Overlay] = &[
 ];
 
 /// An impulse.
-static IMPULSE: Look = Look::new("impulse", 28, [255, 90, 60, 255], 0.0).dots(Dot::Disc, 1.3);
+static IMPULSE: Look = Look::new("impulse", 35, [255, 90, 60, 255], 0.0).dots(Dot::Disc, 1.3);
 /// What the kernel of an impulse reaches.
-static KERNEL: Look = Look::new("kernel", 28, [255, 90, 60, 110], 1.0).dashed(3.0, 3.0);
+static KERNEL: Look = Look::new("kernel", 34, [255, 90, 60, 110], 1.0).dashed(3.0, 3.0);
 /// The way of a stroke.
-static DIRECTION: Look = Look::new("stroke", 28, [40, 110, 240, 255], 1.4);
+static DIRECTION: Look = Look::new("stroke", 36, [40, 110, 240, 255], 1.4);
 /// A pixel at a rim.
-static RIM: Look = Look::new("rim", 26, [20, 170, 90, 190], 0.0).dots(Dot::Square, 0.0).stroke("▒");
+static RIM: Look = Look::new("rim", 33, [20, 170, 90, 190], 0.0).dots(Dot::Square, 1.0).stroke("▒");
 
 /// Every look, from bottom to top.
 pub static LOOKS: &[&Look] = &[&RIM, &KERNEL, &IMPULSE, &DIRECTION];
