@@ -57,6 +57,10 @@ pub struct Styles {
     pub field: &'static str,
     /// The field, within that, with the name of the style.
     pub name: &'static str,
+    /// The field, within that, with what the drawing is fixed to.
+    pub anchor: &'static str,
+    /// The field, within that, with the angle by which all of it is turned, in degrees.
+    pub turn: &'static str,
     /// Those that the program brings.
     pub list: &'static [Style],
     /// The fields of the table of a style by which it is known.

@@ -85,6 +85,15 @@ pub fn apply(document: &Document, name: Option<&str>, source: Source, whole: boo
     Ok(Applied { told, edit })
 }
 
+/// The styles of a layer that is drawn in one or that can be, and where it says so.
+///
+/// # Errors
+/// There is no such layer.
+pub fn of_layer(document: &Document, name: Option<&str>) -> Result<(&'static Styles, String), String> {
+    let (_, styles, path) = styled(document, name, "a style", &|kind| kind.styles.is_some())?;
+    Ok((styles, path))
+}
+
 /// Whether a table of one's own fits at `path`; what is wrong has its place in the table.
 fn fits_into(document: &Document, edit: &Edit, path: &str) -> Result<(), String> {
     let Err(problems) = document.apply(edit) else { return Ok(()) };

@@ -1,5 +1,6 @@
 //! Which keys are in use.
 
+use super::styles;
 use crate::tui::keys;
 use crate::tui::state::painting::Sees;
 use crate::tui::state::{Mode, Pane, State, entry, looking};
@@ -30,6 +31,9 @@ pub fn contexts(state: &State) -> Vec<&'static str> {
         }
         (Mode::Normal, Pane::Tree) => vec![keys::TREE, keys::EVERYWHERE],
         (Mode::Normal, Pane::Table) => vec![keys::TABLE, keys::EVERYWHERE],
+        (Mode::Normal, Pane::Picture) if styles::is_drawn(state) => {
+            vec![keys::TURNING, keys::PICTURE, keys::MOVING, keys::EVERYWHERE]
+        }
         (Mode::Normal, Pane::Picture) => vec![keys::PICTURE, keys::MOVING, keys::EVERYWHERE],
     };
     if matches!(state.typing.mode, Mode::Normal) && state.memory.recorder.recording().is_some() {

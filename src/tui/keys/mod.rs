@@ -8,7 +8,7 @@ pub use names::{Meaning, OWN_FILE, name};
 mod table;
 pub use table::{
     AIM, ENTRY, EVERYWHERE, HELP, KEYS, LINE, LIST, MOVING, NUMBER, PAINTING, PALETTE, PICKABLE, PICKING, PICTURE,
-    RECORDING, SELECTING, SMALL, TABLE, TREE, TYPING,
+    RECORDING, SELECTING, SMALL, TABLE, TREE, TURNING, TYPING,
 };
 
 #[cfg(test)]
@@ -55,7 +55,7 @@ mod tests {
 
     #[test]
     fn keys_are_found_from_the_inside_out() {
-        let contexts = [PICTURE, MOVING, EVERYWHERE];
+        let contexts = [PICTURE, TURNING, MOVING, EVERYWHERE];
         let find = |contexts: &[&str], pressed: &str| Keymap::default().find(contexts, pressed);
         assert_eq!(find(&contexts, "J"), Meaning::Line("cursor 0 10".into()));
         assert_eq!(find(&contexts, "u"), Meaning::Line("undo".into()));

@@ -19,6 +19,8 @@ pub const PICKING: &str = "picking from a clip";
 pub const PAINTING: &str = "picture, in the layout for painting";
 /// The picture, while the cameras of views are seen in that layout.
 pub const SELECTING: &str = "picture, in select";
+/// The picture, while a layer with strokes is shown.
+pub const TURNING: &str = "picture, of strokes";
 /// The picture with its cursor.
 pub const PICTURE: &str = "picture";
 /// The picture's cursor, also while it sets a jump vector or a landing.
@@ -127,6 +129,7 @@ const OWN: &[KeyRow] = &[
     row(EVERYWHERE, "Space s", "line :synth", "Start typing :synth, for the textures"),
     row(EVERYWHERE, "Space f", "line :field", "Start typing :field, for plots and tables"),
     row(EVERYWHERE, "Space T", "tutor", "Learn the editor, step by step"),
+    row(EVERYWHERE, "Space a", "anchor next", "Fix strokes to the next of surface, screen and texture"),
     row(EVERYWHERE, "Space c", "problems", "List what is wrong in the scene; Enter goes there"),
     row(EVERYWHERE, "Space m", "messages", "Show earlier messages in full"),
     row(EVERYWHERE, "Space g", "probe", "Say what the pixel under the picture's cursor does"),
@@ -225,6 +228,10 @@ const OWN: &[KeyRow] = &[
     row(MOVING, "J", "cursor 0 10", "Move the cursor ten pixels down"),
     row(MOVING, "K", "cursor 0 -10", "Move the cursor ten pixels up"),
     row(MOVING, "L", "cursor 10 0", "Move the cursor ten pixels right"),
+    row(TURNING, "r Left", "turn 5", "Turn the strokes of the layer counter-clockwise, by five degrees"),
+    row(TURNING, "r Right", "turn -5", "Turn them clockwise"),
+    row(TURNING, "r Up", "turn 45", "Turn them by 45 degrees"),
+    row(TURNING, "r Down", "turn -45", "Turn them clockwise by 45 degrees"),
     row(PICTURE, "a", "place add", "Add a point here to the list in focus"),
     row(PICTURE, "r", "place move", "Move the selected point here"),
     row(PICTURE, "s", "place aim", "Set the selected point's jump vector, or where it lands: move, then Enter"),

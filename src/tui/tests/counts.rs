@@ -43,6 +43,7 @@ const COUNTED: &[(&str, &str)] = &[
     ("/ \"function\" Enter Enter j j j j", "choice previous"),
     ("/ \"function\" Enter Enter", "choice to s"),
     ("/ \"motion\" Enter Enter l", "step 1"),
+    ("", "turn 5"),
     ("", "step-size smaller"),
     ("", "step-size larger"),
     ("g g", "move down"),
@@ -108,6 +109,7 @@ pub fn every_command_repeats_by_its_count_or_uses_it_or_refuses_it() {
         let run = |times: usize, line: &str| {
             let mut state = match line.trim_start_matches("2 ").split(' ').next() {
                 Some("clip" | "pick") => super::picking::looking(),
+                Some("turn") => state_of(super::sketches::SCENE),
                 _ if line.contains("problem") => state_of(super::told::TWO_PROBLEMS),
                 _ => state(),
             };

@@ -52,6 +52,7 @@ const TABLES: &[fn()] = &[
     super::undoing::undo_says_what_it_undid,
     super::items::pictures_and_names_come_and_go,
     super::profiles::a_preset_is_applied_in_one_step_to_the_layer_that_is_shown,
+    super::profiles::strokes_are_turned_in_the_picture_and_fixed_to_the_next_thing,
     super::lines::what_lasts_of_no_key_changes_no_scene,
     super::picking::sprites_are_picked_from_frames_of_the_clip,
     super::picture::zooming_keeps_the_cursor_and_panning_takes_it_along,

@@ -103,3 +103,45 @@ fn names_are_completed() {
     press(&mut state, ": \"profile fi\" Tab");
     assert!(matches!(&state.typing.mode, Mode::Line(line) if line.text.value() == "profile fire"));
 }
+
+/// The anchor and the turn of the first layer's strokes.
+fn drawn(state: &State) -> (Value, Value) {
+    (at(state, "/layers/0/strokes/anchor"), at(state, "/layers/0/strokes/direction/turn"))
+}
+
+#[test]
+pub fn strokes_are_turned_in_the_picture_and_fixed_to_the_next_thing() {
+    let scene = r##"{ "plica": 1, "size": [32, 32], "camera": {}, "meshes": { "m": { "path": "m.obj" } }, "layers": [
+        { "kind": "mesh", "name": "cow", "mesh": "m", "strokes": { "style": "hatching" } },
+        { "kind": "mesh", "name": "bare", "mesh": "m" } ] }"##;
+    for (layer, keys, anchor, turn) in [
+        (0, "Space a", json!("screen"), Value::Null),
+        (0, "Space a Space a", json!("texture"), Value::Null),
+        (0, "Space a Space a Space a", json!("surface"), Value::Null),
+        (0, ": \"anchor texture\" Enter", json!("texture"), Value::Null),
+        (0, "g i r Left r Left r Right", Value::Null, json!(5)),
+        (0, "g i r Right", Value::Null, json!(355)),
+        (0, "g i r Up : \"turn 0.5\" Enter", Value::Null, json!(45.5)),
+        (0, "g i 3 r Down", Value::Null, json!(225)),
+    ] {
+        let mut state = state_of(scene);
+        state.picture.size = Some((32, 32));
+        state.show(&format!("/layers/{layer}"));
+        press(&mut state, keys);
+        assert_eq!(drawn(&state), (anchor, turn), "{keys}: {:?}", state.message);
+    }
+    let mut state = state_of(scene);
+    state.show("/layers/0");
+    press(&mut state, ": \"anchor scene\" Enter");
+    assert!(said_last(&state).1.starts_with("strokes are not fixed to \"scene\""), "{:?}", state.message);
+    for (line, style) in
+        [("next", "cross-hatching"), ("previous", "hatching"), ("previous", "charcoal"), ("next", "hatching")]
+    {
+        press(&mut state, &format!(": \"style {line}\" Enter"));
+        assert_eq!(at(&state, "/layers/0/strokes/style"), json!(style), "{line}");
+    }
+    // Where nothing is drawn in strokes a point is moved by the same key.
+    state.show("/layers/1");
+    press(&mut state, "g i r");
+    assert!(said_last(&state).1.contains("no row here has a place") || said_last(&state).0, "{:?}", state.message);
+}

@@ -7,7 +7,7 @@ use crate::tui::graphics::counts::{Counts, PARTS};
 use crate::tui::layout::{self, picture};
 use crate::tui::state::State;
 
-const SCENE: &str = r##"{"plica": 1, "size": [64, 48], "camera": {"position": [0, 0, 4]}, "meshes": {"m": {"path": "m.obj"}},
+pub const SCENE: &str = r##"{"plica": 1, "size": [64, 48], "camera": {"position": [0, 0, 4]}, "meshes": {"m": {"path": "m.obj"}},
   "layers": [{"kind": "mesh", "name": "m", "mesh": "m", "strokes": {"style": "none",
     "noises": {"a": {"spacing": 8, "regularity": 2}},
     "marks": [{"name": "ink", "kind": "ink", "noise": "a", "amount": 0.5}, {"name": "line", "kind": "outline"}]}}]}"##;

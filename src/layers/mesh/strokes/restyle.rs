@@ -9,8 +9,17 @@ use super::styles::LIST;
 use crate::layers::starts::{Comparison, Style, Styles};
 
 /// The styles of mesh layers.
-pub static STYLES: Styles =
-    Styles { field: "/strokes", name: "/style", list: LIST, marks: &["ground", "noises", "marks"], named, own, whole };
+pub static STYLES: Styles = Styles {
+    field: "/strokes",
+    name: "/style",
+    anchor: "/anchor",
+    turn: "/direction/turn",
+    list: LIST,
+    marks: &["ground", "noises", "marks"],
+    named,
+    own,
+    whole,
+};
 
 /// Another style keeps what is written, but for noises and marks: they change those of the style that they were written
 /// over.
