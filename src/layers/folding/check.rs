@@ -101,12 +101,7 @@ fn check_zone(zone: &Zone) -> Vec<Problem> {
     let mut problems = outline(&zone.outline, "/outline");
     let regions = zone.fold.iter().flat_map(|fold| fold.regions()).enumerate();
     problems.extend(regions.flat_map(|(i, region)| outline(region, &format!("/fold/regions/{i}"))));
-    if let Interpolation::ModifiedShepardRandom { radius, ring, .. } = zone.interpolation
-        && ring > radius
-    {
-        let message = format!("the ring of {ring} px is wider than the radius of {radius} px");
-        problems.push(Problem::warning("/interpolation/ring", message).hint("make the ring narrower than the radius"));
-    }
+    problems.extend(zone.interpolation.check().map(|problem| problem.under("/interpolation")));
     if matches!(zone.fold, Some(Fold::Mask { .. })) && zone.sampler.is_some() {
         let hint = "remove either the fold or the sampler";
         problems.push(Problem::error("/fold", "a mask and a sampler image do not go together").hint(hint));
@@ -238,8 +233,8 @@ fn telling(position: &Position) -> Vec<f64> {
 
 /// Checks of numbers in a position function that depend on each other.
 fn position(position: &Position) -> Vec<Problem> {
-    if let Position::Exponential { rate: 0.0 } | Position::ExponentialInverse { rate: 0.0 } = position {
-        return vec![Problem::error("/rate", "a rate of 0 has no curve").hint("use the function linear")];
+    if let Some(problem) = position.check() {
+        return vec![problem];
     }
     match position.pieces() {
         Pieces::Whole => Vec::new(),

@@ -2,8 +2,10 @@
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 
 use crate::base::maths::{TAU, cos, exp, expm1, sin, tanh};
+use crate::base::problem::Problem;
 use crate::layers::keyframes::{self, Between};
 use crate::layers::timeline::Wrap;
 
@@ -180,7 +182,34 @@ pub enum Pieces<'a> {
     Segments(&'a [Segment]),
 }
 
+/// The initial value of a field of a function; `None` if zeros will do.
+pub fn fresh(function: &str, field: &str) -> Option<Value> {
+    match (function, field) {
+        ("cubic-bezier", "x1" | "x2") => Some(json!(0.25)),
+        ("cubic-bezier", "y1") => Some(json!(0.1)),
+        ("cubic-bezier", "y2") => Some(json!(1)),
+        ("keyframes", "points") => Some(json!([[0, 0], [1, 1]])),
+        ("piecewise", "segments") => Some(json!([{ "until": 1, "from": 0, "to": 1 }])),
+        _ => None,
+    }
+}
+
 impl Position {
+    /// What single numbers may not be, beyond their ranges.
+    pub fn check(&self) -> Option<Problem> {
+        match self {
+            Position::Exponential { rate } | Position::ExponentialInverse { rate } => (*rate == 0.0)
+                .then(|| Problem::error("/rate", "a rate of 0 has no curve").hint("use the function linear")),
+            Position::Linear
+            | Position::Sigmoid { .. }
+            | Position::Sine { .. }
+            | Position::Cosine { .. }
+            | Position::CubicBezier { .. }
+            | Position::Keyframes { .. }
+            | Position::Piecewise { .. } => None,
+        }
+    }
+
     /// What it is made of.
     pub fn pieces(&self) -> Pieces<'_> {
         match self {

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::model::PictureLayer;
 use super::neat::{corners, middle, neat, neat_pair};
-use super::tools;
+use super::{interpolation, position, tools};
 use crate::base::pointer::Pointer;
 use crate::layers::starts::Shown;
 
@@ -41,15 +41,12 @@ pub fn start(variant: &str, field: &str, bounds: Rect) -> Option<Value> {
         ("ellipse", "radii") => json!([neat(w / 2.0), neat(h / 2.0)]),
         ("polygon", "points") => json!([tl, tr, br, bl]),
         ("path", "nodes") => json!([{ "at": tl }, { "at": tr }, { "at": br }, { "at": bl }]),
-        ("modified-shepard" | "modified-shepard-random", "radius") => json!(neat((w.max(h) / 2.0).max(1.0))),
-        ("modified-shepard-random", "ring") => json!(neat((w.max(h) / 8.0).max(0.25))),
-        ("cubic-bezier", "x1" | "x2") => json!(0.25),
-        ("cubic-bezier", "y1") => json!(0.1),
-        ("cubic-bezier", "y2") => json!(1),
-        ("keyframes", "points") => json!([[0, 0], [1, 1]]),
-        ("piecewise", "segments") => json!([{ "until": 1, "from": 0, "to": 1 }]),
         (_, "at" | "center") => neat_pair(c),
-        _ => return tools::fresh(variant, bounds)?.get(field).cloned(),
+        _ => {
+            let of_tool = || tools::fresh(variant, bounds)?.get(field).cloned();
+            let others = || interpolation::fresh(variant, field, bounds).or_else(|| position::fresh(variant, field));
+            return of_tool().or_else(others);
+        }
     })
 }
 

@@ -74,10 +74,7 @@ fn tool(moving: &mut Moving, value: &mut Value, tool: &Tool) -> Result<Moved, St
         Tool::Curve { frame: CurveFrame::Curve, .. } => own_frame(moving, value),
         // Its vector says it all.
         Tool::Translate { .. } => Ok(BY_FIELDS),
-        other => match anchors::transform(other) {
-            Some(map) => dense(moving, value, other, map),
-            None => Ok(BY_FIELDS),
-        },
+        other => anchors::transform(other).map_or(Ok(BY_FIELDS), |map| dense(moving, value, other, map)),
     }
 }
 

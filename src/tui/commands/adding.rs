@@ -47,7 +47,10 @@ fn add_file(state: &mut State, path: &str) -> Done {
         List::Meshes => {
             Brought::later(Start::within(state.document()).mesh(stem(path), path, None, Looks::default()), path)
         }
-        _ => Brought::later(Start::within(state.document()).picture(stem(path), path, (0, 0)), path),
+        // Files are pictures unless they are known as something else.
+        List::Images | List::Shapes | List::Layers => {
+            Brought::later(Start::within(state.document()).picture(stem(path), path, (0, 0)), path)
+        }
     };
     let Brought { start, is_there, path, mut notes, copies } = found;
     let own = format!("/{}", list.words().0);

@@ -66,7 +66,7 @@ fn lines(state: &State) -> Vec<(Point, Point)> {
             points.extend(closed.then(|| points.first().copied()).flatten());
             points.windows(2).map(|ends| (ends[0], ends[1])).collect::<Vec<_>>()
         }
-        _ => Vec::new(),
+        Shape::Fill(_) | Shape::Cell(..) | Shape::Dot(_) | Shape::Arrow(..) | Shape::Label(..) => Vec::new(),
     };
     marks.into_iter().flat_map(|mark| of(mark.shape)).collect()
 }

@@ -24,7 +24,7 @@ pub const COMMANDS: &[Command] = &[
             Mode::Aim => state.memory.under = vec![Mode::Aim],
             // Pages may themselves be over something.
             Mode::Pages(_) | Mode::Choice(_) => state.memory.under.push(state.typing.mode.clone()),
-            _ => state.memory.under.clear(),
+            Mode::Normal | Mode::Entry(_) | Mode::Line(_) | Mode::Palette(_) => state.memory.under.clear(),
         }
         state.typing.mode = Mode::Line(line);
         Ok(())
@@ -77,7 +77,9 @@ fn type_text(state: &mut State, call: &Call) -> Done {
             palette.text.insert(&typed);
             palette.narrow();
         }
-        _ => return Err("nothing is being typed: i edits a cell, : begins a command".into()),
+        Mode::Normal | Mode::Choice(_) | Mode::Pages(_) | Mode::Aim => {
+            return Err("nothing is being typed: i edits a cell, : begins a command".into());
+        }
     }
     Ok(())
 }
@@ -175,7 +177,7 @@ fn text(state: &mut State, call: &Call) -> Done {
             palette.narrow();
             changed
         }
-        _ => true,
+        Mode::Normal | Mode::Choice(_) | Mode::Pages(_) | Mode::Aim => true,
     };
     seek(state);
     if changed { Ok(()) } else { Err(format!("a text cannot {}", call.text)) }

@@ -271,7 +271,7 @@ fn unbound(state: &mut State, key: &str, pressed: &str) {
         _ if state.is_small() => state.complain(TOO_SMALL),
         Mode::Aim => state.complain("aiming: only the cursor, Enter, Esc, : and ? act"),
         Mode::Normal => state.complain(format!("{pressed} is not a key here (? shows the keys)")),
-        _ => {}
+        Mode::Entry(_) | Mode::Line(_) | Mode::Palette(_) | Mode::Choice(_) | Mode::Pages(_) => {}
     }
 }
 

@@ -28,16 +28,17 @@ pub fn draw(state: &State, screen: Rect, buffer: &mut Buffer) -> Option<Position
                     let narrowed = choice.narrowed(line.text.value().trim());
                     draw_choice(narrowed.as_ref().unwrap_or(choice), screen, buffer);
                 }
-                _ => {}
+                Some(Mode::Normal | Mode::Entry(_) | Mode::Line(_) | Mode::Palette(_) | Mode::Aim) | None => {}
             }
             None
         }
         Mode::Palette(palette) => Some(super::palette::draw(state, palette, screen, buffer)),
-        _ if !state.typing.pressed.is_empty() => {
-            draw_hints(state, screen, buffer);
+        Mode::Normal | Mode::Entry(_) | Mode::Aim => {
+            if !state.typing.pressed.is_empty() {
+                draw_hints(state, screen, buffer);
+            }
             None
         }
-        _ => None,
     }
 }
 

@@ -4,11 +4,13 @@
 //! A method is a `kernel`: how the weight of an anchor depends on its distance, and what follows from the weighted sums.
 //! [`cells`] makes the sums, for every method in the same way.
 
-use kurbo::Vec2;
+use kurbo::{Rect, Vec2};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 
 use super::anchor::Anchor;
+use super::neat::neat;
 use crate::base::problem::Problem;
 use crate::layers::parts::materials::Materials;
 use area::{Area, Stretch};
@@ -88,7 +90,31 @@ fn two() -> f64 {
 /// The anchors of a zone, prepared for interpolation.
 pub struct Interpolator(Box<dyn Method>);
 
+/// The initial value of a field of a method in a zone with this box; `None` if zeros will do.
+pub fn fresh(method: &str, field: &str, bounds: Rect) -> Option<Value> {
+    let side = bounds.width().max(bounds.height());
+    match (method, field) {
+        ("modified-shepard" | "modified-shepard-random", "radius") => Some(json!(neat((side / 2.0).max(1.0)))),
+        ("modified-shepard-random", "ring") => Some(json!(neat((side / 8.0).max(0.25)))),
+        _ => None,
+    }
+}
+
 impl Interpolation {
+    /// Checks fields that depend on each other.
+    pub fn check(&self) -> Option<Problem> {
+        match *self {
+            Interpolation::ModifiedShepardRandom { radius, ring, .. } => (ring > radius).then(|| {
+                let message = format!("the ring of {ring} px is wider than the radius of {radius} px");
+                Problem::warning("/ring", message).hint("make the ring narrower than the radius")
+            }),
+            Interpolation::Shepard { .. }
+            | Interpolation::ModifiedShepard { .. }
+            | Interpolation::ThinPlate { .. }
+            | Interpolation::Rigid { .. } => None,
+        }
+    }
+
     /// Bytes of memory that preparing `count` anchors takes, besides the anchors.
     pub fn bytes(&self, count: u64) -> u64 {
         match self {
