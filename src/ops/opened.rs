@@ -74,7 +74,7 @@ impl Opened {
     /// The scene in each of its ways, as [`Scene::compared`] has them.
     ///
     /// # Errors
-    /// It has none.
+    /// If the scene cannot be compared so.
     pub fn compared(self, by: &str) -> Result<Vec<Opened>> {
         let ways = self.document.scene().compared(by).map_err(|why| Error::at(self.path.display(), why))?;
         let opened = |(_, scene): (&str, Scene)| {

@@ -120,7 +120,7 @@ pub fn apply(
 /// Refuses standard input, which cannot be written back.
 ///
 /// # Errors
-/// It is meant.
+/// If the scene is standard input.
 pub fn refuse_input(scene: &Path) -> Result<()> {
     match scene.as_os_str() == "-" {
         true => Err(Error::Usage("what is changed has to be a file: - is standard input, which is only read".into())),

@@ -8,11 +8,11 @@ use std::time::Duration;
 
 use super::Progress;
 
-/// How often is looked how far the work is.
+/// How often progress is shown.
 const EVERY: Duration = Duration::from_millis(200);
 
-/// What `work` makes on a thread of its own; it tells what it is handed how many steps more, of `total`, are done, and
-/// `messages` shows that as steps of `what`. That the last is done shows in what follows.
+/// Runs `work` on a thread of its own and returns its result. `work` reports how many more of the `total` steps are done,
+/// and `messages` shows that as steps of `what`; the last step is not shown, as the result follows.
 pub fn watched<T: Send>(
     messages: &mut dyn Progress,
     what: &str,

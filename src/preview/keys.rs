@@ -42,7 +42,7 @@ const OWN: &[KeyRow] = &[
     row(VIEW, ")", "wipe-right", "Move the before/after border right"),
     row(VIEW, "w", "view-seam", "The loop's seam, the last frame against the first"),
     row(VIEW, "t", "view-checkerboard", "A checkerboard under transparency"),
-    row(VIEW, "L", "view-legends", "Legends of the vector field"),
+    row(VIEW, "E", "view-legends", "Legends of the vector field"),
     row(VIEW, "+", "zoom-in", "Larger"),
     row(VIEW, "-", "zoom-out", "Smaller"),
     row(VIEW, "f", "zoom-fit", "Fits the window"),

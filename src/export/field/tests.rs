@@ -71,10 +71,11 @@ fn the_png_shows_arrows_and_picture() {
 
 #[test]
 fn nothing_reaches_out_of_the_picture() {
-    let (mut scene, synth) = scene();
-    let crate::layers::Layer::Picture(layer) = &mut scene.layers[0] else { panic!() };
-    layer.zones[0].outline =
-        serde_json::from_str(r#"{"kind":"rectangle","x":-99,"y":-99,"width":150,"height":115}"#).unwrap();
+    let (scene, synth) = scene();
+    let mut json = serde_json::to_value(&scene).unwrap();
+    json["layers"][0]["zones"][0]["outline"] =
+        serde_json::json!({ "kind": "rectangle", "x": -99, "y": -99, "width": 150, "height": 115 });
+    let scene = serde_json::from_value(json).unwrap();
     let image = image::load_from_memory(&png(&plot(&scene, &synth, None, false)).unwrap()).unwrap().to_rgba8();
     assert!((0..image.width()).all(|x| image.get_pixel(x, 5).0 == [255; 4]));
     assert!((0..image.height()).all(|y| image.get_pixel(5, y).0 == [255; 4]));

@@ -15,7 +15,7 @@ const LINES: &str = "view-lines";
 
 /// Every overlay.
 pub static OVERLAYS: &[Overlay] =
-    &[GROUND_OVERLAY, CAMERA_OVERLAY, Overlay::new(LINES, "S", "The flow lines of waterfalls", When::EveryFrame)];
+    &[GROUND_OVERLAY, CAMERA_OVERLAY, Overlay::new(LINES, "L", "The flow lines of waterfalls", When::EveryFrame)];
 
 /// A flow line of water.
 static WATER: Look = Look::new("flow line", 28, [120, 200, 255, 160], 1.0).dots(Dot::Disc, 1.5);
@@ -39,14 +39,16 @@ const TICK: f64 = 0.1;
 /// At most so many lines are drawn, and so many ticks on each.
 const MOST: usize = 2000;
 const MOST_TICKS: usize = 200;
+/// So many lines are next to a node.
+const NEXT_TO: usize = 6;
 
 /// The marks of a layer at one time.
 pub fn marks(synth: &Synth, view: &View, moment: &Moment) -> Vec<Mark> {
     let Some(eye) = moment.eye.filter(|_| view.shows(LINES)) else { return Vec::new() };
-    let reach = view.selection.as_deref().and_then(|selection| reach(synth, selection));
+    let next_to = view.selection.as_deref().and_then(|selection| next_to(synth, selection));
     let carrying: Vec<&Line> = synth.lines.iter().filter(|line| line.carries()).collect();
     let step = carrying.len().div_ceil(MOST).max(1);
-    let next = |line: &Line| !line.foam && reach.as_ref().is_some_and(|reach| reach.contains(&line.place));
+    let next = |line: &Line| !line.foam && next_to.as_ref().is_some_and(|next_to| next_to.contains(&line.place));
     let drawn = carrying.into_iter().step_by(step).flat_map(|line| {
         let (look, path) = if next(line) {
             (&NEXT, "/lip")
@@ -100,12 +102,16 @@ fn finished(points: Vec<Point>, look: &'static Look, path: &str) -> Option<Mark>
     (points.len() > 1).then(|| Mark::new(look, path, Shape::Line { points, closed: false }))
 }
 
-/// How far along the lip lines are next to the node that is selected.
-fn reach(synth: &Synth, selection: &str) -> Option<std::ops::RangeInclusive<f64>> {
+/// How far along the lip the lines are that stand out: the [`NEXT_TO`] nearest to the node that is selected.
+fn next_to(synth: &Synth, selection: &str) -> Option<std::ops::RangeInclusive<f64>> {
     let (node, _) = Pointer(selection).item_of("/lip")?;
     let lip = &synth.values.lip;
-    let before = |node: usize| lip.windows(2).take(node).map(|pair| pair[0].at.distance(pair[1].at)).sum::<f64>();
-    (node < lip.len()).then(|| before(node.saturating_sub(1))..=before(node + 1))
+    let own: f64 = lip.windows(2).take(node).map(|pair| pair[0].at.distance(pair[1].at)).sum();
+    let water = synth.lines.iter().filter(|line| !line.foam && line.carries());
+    let mut away: Vec<f64> = water.map(|line| (line.place - own).abs()).collect();
+    away.sort_by(f64::total_cmp);
+    let farthest = *away.get(NEXT_TO - 1).or(away.last())?;
+    (node < lip.len()).then_some(own - farthest..=own + farthest)
 }
 
 #[cfg(test)]
@@ -138,8 +144,8 @@ mod tests {
         let next: Vec<&Mark> = found.iter().filter(|mark| mark.look.name == NEXT.name).collect();
         let ticks = next.iter().filter(|mark| matches!(mark.shape, Shape::Dot(_))).count();
         let lines = next.len() - ticks;
-        // A quarter of the lip, and a tick at each tenth of the 0.69 s that they last.
-        assert!((lines as f64 / f64::from(synth.values.lines) - 0.25).abs() < 0.02, "{lines}");
+        // The nearest, and a tick at each tenth of the 0.69 s that they last.
+        assert_eq!(lines, NEXT_TO);
         assert_eq!(ticks, 6 * lines);
         assert!(next.iter().all(|mark| mark.path == "/lip"));
         let grips: Vec<&str> = found.iter().filter(|mark| mark.look.is_grip).map(|mark| mark.path.as_str()).collect();

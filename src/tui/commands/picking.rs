@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 
 use super::command::{Call, Command, Done, command};
 use super::items::go_to;
+use crate::base::pointer::Pointer;
 use crate::layers::parts::picking::Picks;
 use crate::ops::sprites;
 use crate::scene::Edit;
@@ -171,8 +172,17 @@ fn add(state: &mut State, now: Looking, picks: Picks, kind: &str) -> Done {
     let edits = [set(picks.frame, json!(now.frame)), set(picks.kind, json!(kind))].into_iter().chain(alone);
     state.edit(Edit::all([edit].into_iter().chain(edits)), false)?;
     go_to(state, &pointer);
+    if is_first(state, &pointer) {
+        state.say("picks stand in place of the sprites of their kind that are found by themselves: :sprites take keeps those too");
+    }
     tell_alone(state, unfollowed);
     Ok(())
+}
+
+/// Whether a pick is the only one in its list.
+fn is_first(state: &State, pointer: &str) -> bool {
+    let list = Pointer(pointer).split().and_then(|(list, _)| state.document().json().pointer(list)?.as_array());
+    list.is_some_and(|picks| picks.len() == 1)
 }
 
 /// Whether a pick follows what moves, by the field that says so.

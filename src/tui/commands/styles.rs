@@ -65,8 +65,8 @@ pub fn is_drawn(state: &State) -> bool {
 /// Draws the layer in the style that is so many places after its own.
 fn step(state: &mut State, by: i64) -> Done {
     let (styles, path) = field(state)?;
-    let own = field::in_force(state.document(), &(path + styles.name));
-    let at = styles.list.iter().position(|style| own.as_ref().is_some_and(|own| own == style.name));
+    let own = state.document().json().pointer(&(path + styles.name));
+    let at = styles.list.iter().position(|style| own.is_some_and(|own| *own == style.name));
     let count = styles.list.len() as i64;
     let next = at.map_or(if by > 0 { 0 } else { count - 1 }, |at| (at as i64 + by).rem_euclid(count));
     apply(state, styles.list[next as usize].name)

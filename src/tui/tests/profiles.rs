@@ -126,7 +126,7 @@ pub fn strokes_are_turned_in_the_picture_and_fixed_to_the_next_thing() {
     ] {
         let mut state = state_of(scene);
         state.picture.size = Some((32, 32));
-        state.show(&format!("/layers/{layer}"));
+        state.show(format!("/layers/{layer}"));
         press(&mut state, keys);
         assert_eq!(drawn(&state), (anchor, turn), "{keys}: {:?}", state.message);
     }

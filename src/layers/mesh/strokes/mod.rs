@@ -76,6 +76,6 @@ pub struct Given<'a> {
     pub normal: Vec<Vec3>,
     /// The shaded color there, premultiplied.
     pub shaded: Vec<Rgba>,
-    /// The light that falls there; none if tones are not of it.
+    /// The light that falls there; empty if tones do not depend on it.
     pub light: Vec<f32>,
 }
