@@ -15,6 +15,10 @@ const HEAD: u64 = 512;
 /// # Errors
 /// If it cannot be read, is larger than the limits allow, or contains errors: all of them.
 pub fn open(path: &Path, options: &Options) -> Result<Document> {
+    if let Some(kind) = other_kind(path) {
+        let cure = format!("plica edit {} makes a scene of it", path.display());
+        return Err(Error::at(path.display(), format!("is {kind}, not a scene")).cure(cure));
+    }
     parse(path, &read_text(path, &options.limits)?, options)
 }
 
@@ -55,6 +59,15 @@ pub fn is_one(path: &Path) -> bool {
     let is_model = paths::is_model(&path.to_string_lossy());
     read.is_some() && is_object && !is_model
         || path.extension().is_some_and(|end| end == "json") && !picture::is_one(path)
+}
+
+/// What a file is that a scene can be made of, if it is no scene.
+fn other_kind(path: &Path) -> Option<&'static str> {
+    if !path.is_file() || is_one(path) {
+        return None;
+    }
+    let is_model = paths::is_model(&path.to_string_lossy());
+    if is_model { Some("a model") } else { picture::is_one(path).then_some("a picture") }
 }
 
 /// Whether a text is complete JSON.

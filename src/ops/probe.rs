@@ -109,7 +109,7 @@ fn parse_point(text: &str) -> std::result::Result<[f64; 2], String> {
 }
 
 fn parse_time(text: &str) -> std::result::Result<f64, String> {
-    let time = text.parse::<f64>().ok().filter(|time| time.is_finite());
+    let time = text.parse::<f64>().ok().filter(|time| (0.0..=1.0).contains(time));
     time.ok_or_else(|| "expected a number from 0 to 1".into())
 }
 
@@ -167,7 +167,14 @@ fn prose(read: &[ReadOut], [r, g, b, a]: [u8; 4], (x, y): (usize, usize), time: 
     let entries = read.iter().enumerate().flat_map(|(i, read)| read.entries.iter().map(move |entry| (i, entry)));
     let is_empty = |value: &Value| matches!(value, Value::Items(items) if items.is_empty());
     let is_told = |entry: &Entry| !entry.label.is_empty() && !is_empty(&entry.value);
+    // What is seen is that of the layer that is meant: what else is there lies behind it.
+    let shows = format!("\n  shows #{}, alpha {a}", hex(&[r, g, b]));
+    let mut shown = false;
     for (i, Entry { label, value, .. }) in entries.filter(|(_, entry)| is_told(entry)) {
+        if i > 0 && !shown {
+            text += &shows;
+            shown = true;
+        }
         let short = matches!(value, Value::Number(_) | Value::Flag { .. });
         text += match value {
             Value::Of(_) if i == 0 => ": ",
@@ -178,7 +185,7 @@ fn prose(read: &[ReadOut], [r, g, b, a]: [u8; 4], (x, y): (usize, usize), time: 
         text += &said(label, value);
         shares = short;
     }
-    text + &format!("\n  shows #{}, alpha {a}", hex(&[r, g, b]))
+    if shown { text } else { text + &shows }
 }
 
 /// An entry in words.
@@ -317,7 +324,7 @@ mod tests {
             (
                 [outside, vec![water]].concat(),
                 r#"{"zone":null,"color":[1,2,3,255],"others":[{"layer":"falls"}]}"#,
-                "pixel 7,8 at t 0.5: in no zone\nalso: layer \"falls\"\n  shows #010203, alpha 255",
+                "pixel 7,8 at t 0.5: in no zone\n  shows #010203, alpha 255\nalso: layer \"falls\"",
             ),
             (
                 sprites.clone(),

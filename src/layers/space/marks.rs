@@ -8,6 +8,7 @@ use super::camera::Camera;
 use super::eye::{Eye, NEAR_M};
 use super::hidden::Depths;
 use crate::base::maths::{lerp, nice};
+use crate::base::number::tidy;
 use crate::layers::parts::marks::{Dot, Look, Mark, Overlay, Shape, View, When};
 use crate::layers::parts::moment::Moment;
 
@@ -142,7 +143,7 @@ impl Drawn<'_> {
             (!hidden).then_some((found[0].0, at))
         });
         if let Some((point, at)) = seen {
-            self.marks.push(Mark::new(look, "", Shape::Label(point, format!("{name} {at} m"))));
+            self.marks.push(Mark::new(look, "", Shape::Label(point, format!("{name} {} m", tidy(at)))));
         }
     }
 

@@ -135,7 +135,7 @@ pub fn strokes_are_turned_in_the_picture_and_fixed_to_the_next_thing() {
     press(&mut state, ": \"anchor scene\" Enter");
     assert!(said_last(&state).1.starts_with("strokes are not fixed to \"scene\""), "{:?}", state.message);
     for (line, style) in
-        [("next", "cross-hatching"), ("previous", "hatching"), ("previous", "charcoal"), ("next", "hatching")]
+        [("next", "cross-hatching"), ("previous", "hatching"), ("previous", "painterly"), ("next", "hatching")]
     {
         press(&mut state, &format!(": \"style {line}\" Enter"));
         assert_eq!(at(&state, "/layers/0/strokes/style"), json!(style), "{line}");
