@@ -64,7 +64,10 @@ pub fn read(path: &Path, options: &Options) -> Result<Model> {
     });
     let shown = |picture: &String| picture::decode(sibling(picture)?, picture, limits, &limits.budget()).map(|_| ());
     let picture = match offered.first() {
-        Some(_) if mesh.without_uv.is_some() => None,
+        Some(_) if mesh.without_uv.is_some() => {
+            notes.push("its picture is not shown: the mesh has no texture coordinates (unwrap it)".to_owned());
+            None
+        }
         Some(picture) => match shown(picture) {
             Ok(()) => Some(picture.clone()),
             Err(error) => {
