@@ -3,7 +3,9 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
-use super::stage::{Group, Stage};
+#[cfg(feature = "window")]
+use super::stage::Group;
+use super::stage::Stage;
 use crate::base::pixels::Rgba;
 use crate::base::problem::Problem;
 use crate::layers::parts::moment::Moment;

@@ -289,7 +289,7 @@ fn beside(state: &State, node: &str, next: bool) -> Result<Option<String>, Strin
 /// The place, or its nearest ancestor that exists.
 fn nearest(state: &State, mut place: String) -> String {
     while !field::is_there(state.document(), &place) {
-        place.truncate(place.rfind('/').unwrap_or(0));
+        place.truncate(Pointer(&place).parent().map_or(0, str::len));
     }
     place
 }

@@ -5,6 +5,7 @@ use serde_json::Value;
 
 use super::command::{Call, Command, Done, command};
 use super::items::go_to;
+use crate::base::pointer::Pointer;
 use crate::layers::parts::shots::Put;
 use crate::scene::Edit;
 use crate::tui::layout::picture;
@@ -92,8 +93,7 @@ fn sphere(state: &mut State, call: &Call) -> Done {
     }
     let list = list.unwrap_or_default();
     let focused = state.focused();
-    let selected = focused.strip_prefix(&format!("{path}/")).and_then(|rest| rest.split('/').next()?.parse().ok());
-    let selected: Option<usize> = selected.filter(|index| *index < list.len());
+    let selected = Pointer(&focused).item_of(&path).map(|(index, _)| index).filter(|index| *index < list.len());
     let (edit, index) = match (call.text, selected) {
         ("move", Some(index)) => (Edit::set(document, &format!("{path}/{index}"), value), index),
         ("move", None) => return Err("no extreme point is selected: go to one, or a adds one".into()),

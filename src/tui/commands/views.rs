@@ -7,6 +7,7 @@ use serde_json::json;
 use super::camera::eye;
 use super::command::{Call, Command, Done, command};
 use super::profiles::shown;
+use crate::base::pointer::Pointer;
 use crate::base::problem::{nearest, quoted};
 use crate::layers::parts::shots::{SeenFrom, Shot};
 use crate::layers::space::camera::Camera;
@@ -116,8 +117,8 @@ fn view(state: &State, layer: usize, name: Option<&str>) -> Result<(usize, Strin
     let lying = technique.lying().unwrap_or_default();
     let list = technique.lay(&[]).map_or("", |laying| laying.list);
     let focused = state.focused();
-    let own = focused.strip_prefix(&format!("/layers/{layer}{list}/")).and_then(|rest| rest.split('/').next());
-    let index = match (name, own.and_then(|index| index.parse().ok())) {
+    let own = Pointer(&focused).item_of(&format!("/layers/{layer}{list}"));
+    let index = match (name, own.map(|(index, _)| index)) {
         (Some(name), _) => lying.iter().position(|lying| lying.name == name).ok_or_else(|| {
             let hint = nearest(name, lying.iter().map(|lying| lying.name)).unwrap_or_default();
             format!("there is no view {} ({hint})", quoted(name))

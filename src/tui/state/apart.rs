@@ -32,7 +32,8 @@ impl Apart {
         if !self.solo.is_empty() {
             for (i, layer) in document.scene().layers.iter().enumerate() {
                 let own = format!("/layers/{i}");
-                let zones: Vec<&String> = self.solo.iter().filter(|one| one.starts_with(&format!("{own}/"))).collect();
+                let zones: Vec<&String> =
+                    self.solo.iter().filter(|one| **one != own && Pointer(one).is_within(&own)).collect();
                 match self.solo.contains(&own) {
                     true => {}
                     false if zones.is_empty() => drop(hidden.insert(own)),

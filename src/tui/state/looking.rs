@@ -4,6 +4,7 @@ use kurbo::Point;
 
 pub use super::picture::Looking;
 use super::{State, painting};
+use crate::base::pointer::Pointer;
 use crate::layers::parts::picking::{Picking, Picks};
 use crate::scene::field;
 use crate::tui::graphics::clip::ClipView;
@@ -12,8 +13,8 @@ use crate::tui::graphics::viewport::Viewport;
 /// Where the layer that the tree's cursor is in has its picks, and whether the cursor is on the node for them.
 pub fn picks(state: &State) -> Option<(usize, Picks, bool)> {
     let node = &state.cursor.node;
-    let (layer, way) = field::layer_of(state.document(), node)?;
-    let index = node[..node.len() - way.len()].rsplit('/').next()?.parse().ok()?;
+    let (index, way) = Pointer(node).item_of("/layers")?;
+    let (layer, _) = field::layer_of(state.document(), node)?;
     layer.picks().map(|picks| (index, picks, picks.node == way))
 }
 

@@ -8,6 +8,7 @@ use super::State;
 pub use super::picture::{ALL, Painting, Sees};
 use crate::base::geometry::farther;
 use crate::base::maths::{cos, sin};
+use crate::base::pointer::Pointer;
 use crate::layers::parts::shots::{Put, SeenFrom};
 use crate::layers::space::camera::Camera;
 use crate::layers::space::fit::{Ball, fit};
@@ -26,10 +27,9 @@ pub fn current(state: &State) -> Option<(usize, usize, String)> {
         let technique = layer.technique();
         let lying = technique.lying().filter(|lying| !lying.is_empty())?;
         let path = format!("/layers/{i}");
-        let list = format!("{path}{}/", technique.lay(&[]).map_or("", |laying| laying.list));
-        let row = focused.strip_prefix(&list).and_then(|rest| rest.split('/').next()?.parse().ok());
-        let row = row.filter(|row| *row < lying.len());
-        let is_own = focused == path || focused.starts_with(&format!("{path}/"));
+        let list = format!("{path}{}", technique.lay(&[]).map_or("", |laying| laying.list));
+        let row = Pointer(&focused).item_of(&list).map(|(row, _)| row).filter(|row| *row < lying.len());
+        let is_own = Pointer(&focused).is_within(&path);
         let index = row.unwrap_or(0);
         Some((row.is_some(), is_own, (i, index, lying[index].name.to_owned())))
     });

@@ -149,7 +149,7 @@ pub fn aiming(state: &State) -> Option<Result<Vec<Fact>, String>> {
     let (pointer, _) = selected(state)?;
     let goal = goal(state, &pointer).ok()?;
     let told = |(field, to): (String, Value)| {
-        let name = field.strip_prefix(&pointer)?.strip_prefix('/')?;
+        let name = Pointer(&field).below(&pointer)?.strip_prefix('/')?;
         let mut item = field::value(state.document(), &pointer)?;
         item.as_object_mut()?.insert(name.to_owned(), to);
         let (layer, _) = field::layer_of(state.document(), &pointer)?;

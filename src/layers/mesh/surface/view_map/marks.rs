@@ -7,6 +7,7 @@ use super::gauge::Gauges;
 use super::map::Map;
 use super::view::{Extremes, View};
 use crate::base::maths::{TAU, cos, sin};
+use crate::base::pointer::Pointer;
 use crate::layers::mesh::pose::Placed;
 use crate::layers::parts::marks::{self, Dot, Look, Mark, Overlay, Shape, When};
 use crate::layers::parts::moment::Moment;
@@ -47,8 +48,8 @@ pub fn marks(map: &Map, points: &Points, shown: &marks::View, moment: &Moment, p
     for view in views {
         drawn.camera(view);
     }
-    let selected = shown.selection.as_deref().and_then(|path| path.strip_prefix("/surface/views/"));
-    let selected = selected.and_then(|path| path.split('/').next()?.parse::<usize>().ok());
+    let selected = shown.selection.as_deref().and_then(|path| Pointer(path).item_of("/surface/views"));
+    let selected = selected.map(|(index, _)| index);
     if let Some(number) = views.iter().position(|view| Some(view.number) == selected) {
         drawn.reach(views, number);
     }
