@@ -55,13 +55,16 @@ pub fn parse(text: &str) -> Result<Value, Problem> {
 }
 
 /// Messages of serde_json, and the same in plainer words: its `classify` does not tell them apart.
-const PLAINER: [(&str, &str); 6] = [
+const PLAINER: [(&str, &str); 9] = [
     ("EOF while parsing a value", "the text ends where a value was expected"),
     ("EOF while parsing an object", "the text ends within an object: a } is missing"),
     ("EOF while parsing a list", "the text ends within a list: a ] is missing"),
     ("EOF while parsing a string", "the text ends within a text: a \" is missing"),
     (OUT_OF_RANGE, "the number is too large"),
     ("expected value", "expected a value: a number, a text in quotes, a list, an object"),
+    ("expected `,` or `}`", "a comma or a } is missing before this"),
+    ("expected `,` or `]`", "a comma or a ] is missing before this"),
+    ("trailing characters", "the scene ends before this: a bracket too many, or too early"),
 ];
 
 const OUT_OF_RANGE: &str = "number out of range";
@@ -313,7 +316,7 @@ mod tests {
     /// Fails if serde_json changes its words: then the table must follow.
     #[test]
     fn the_words_of_serde_json_are_known() {
-        let broken = ["", "{", "[", "\"", "[1e999]", "[x]"];
+        let broken = ["", "{", "[", "\"", "[1e999]", "[x]", "{\"a\": 1 2}", "[1 2]", "{}}"];
         for ((theirs, ours), text) in PLAINER.iter().zip(broken) {
             let error = serde_json::from_str::<Value>(text).unwrap_err().to_string();
             assert_eq!(error.split(" at line").next(), Some(*theirs), "{text}");

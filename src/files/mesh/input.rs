@@ -35,7 +35,7 @@ pub(super) fn whole(file: File, place: &str, limits: &Limits, budget: &Budget) -
 
 /// What is said of a file that would be text, and has bytes that no text has.
 pub(super) fn not_text(place: &str) -> Error {
-    Error::at(place, "is not text: it has zero bytes").cure("copy it again from where it came, or export it again")
+    Error::at(place, "is not text: it holds NUL bytes").cure("copy it again from where it came, or export it again")
 }
 
 /// A text without its byte order mark.

@@ -20,6 +20,7 @@ use crate::scene::{Edit, json};
 use crate::tui::document::cell::Cell;
 use crate::tui::document::choice;
 use crate::tui::document::choice::{Choice, Then};
+use crate::tui::events::Effect;
 use crate::tui::state::recorder::WorkLimit;
 use crate::tui::state::{Mode, Pane, State, first};
 use crate::tui::text::line::Line;
@@ -210,6 +211,8 @@ pub fn go_to(state: &mut State, pointer: &str) {
         }
     }
     state.settle();
+    // Windows follow.
+    state.ask(Effect::Show);
 }
 
 /// Deletes items in one edit, the last first; a field goes back to its default.

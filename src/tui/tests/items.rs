@@ -170,3 +170,13 @@ fn every_list_of_the_schema_can_be_added_to() {
     }
     assert!(seen.len() > 10, "{seen:?}");
 }
+
+#[test]
+fn windows_are_told_of_a_new_row_that_is_selected() {
+    let mut state = state();
+    press(&mut state, "/ \"motion\" Enter Enter");
+    let before = state.focused();
+    let effects = press(&mut state, "o");
+    assert_ne!(state.focused(), before);
+    assert!(effects.iter().any(|effect| matches!(effect, Effect::Show)));
+}

@@ -96,7 +96,7 @@ fn what_is_wrong_is_told_with_its_line() {
         ("hello world\n", "has no triangles (it may not be an OBJ: name a mesh with faces)"),
         (
             "f 1 1 1\nv 0 0 0\n\0\0",
-            "is not text: it has zero bytes (copy it again from where it came, or export it again)",
+            "is not text: it holds NUL bytes (copy it again from where it came, or export it again)",
         ),
         (
             "v 0 0 0\nf 1 1",
