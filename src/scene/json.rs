@@ -64,7 +64,7 @@ const PLAINER: [(&str, &str); 9] = [
     ("expected value", "expected a value: a number, a text in quotes, a list, an object"),
     ("expected `,` or `}`", "a comma or a } is missing before this"),
     ("expected `,` or `]`", "a comma or a ] is missing before this"),
-    ("trailing characters", "the scene ends before this: a bracket too many, or too early"),
+    ("trailing characters", "something follows after the end: a bracket too many, or one too early"),
 ];
 
 const OUT_OF_RANGE: &str = "number out of range";
@@ -302,7 +302,10 @@ mod tests {
             ("[1e999]", "line 1, column 6: the number is too large"),
             ("{ \"a\": NaN }", "line 1, column 8: NaN is no number in JSON"),
             ("{ \"a\":\n x }", "line 2, column 2: expected a value: a number, a text in quotes, a list, an object"),
-            ("{ \"a\": 1 } x", "line 1, column 12: trailing characters"),
+            (
+                "{ \"a\": 1 } x",
+                "line 1, column 12: something follows after the end: a bracket too many, or one too early",
+            ),
             ("", "line 1, column 0: the text ends where a value was expected"),
         ] {
             assert_eq!(parse(text).unwrap_err().message, expected, "{text}");
