@@ -70,9 +70,14 @@ impl Problem {
     }
 
     /// The same problem seen from further out: `prefix` goes before the path.
-    pub fn under(mut self, prefix: &str) -> Self {
-        self.path.insert_str(0, prefix);
-        self
+    pub fn under(self, prefix: &str) -> Self {
+        let path = format!("{prefix}{}", self.path);
+        self.at(path)
+    }
+
+    /// The same problem at another path. An address would still lead to the old one, so it has none.
+    pub fn at(self, path: impl Into<String>) -> Self {
+        Problem { path: path.into(), address: None, ..self }
     }
 }
 
@@ -128,4 +133,17 @@ pub fn quoted(text: &str) -> String {
     let short: String = text.chars().take(LONGEST).collect();
     let more = if short.len() < text.len() { "…" } else { "" };
     format!("{:?}", short + more)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_problem_at_another_path_forgets_the_address_of_the_old_one() {
+        let problem = Problem { address: Some("layers.cow".into()), ..Problem::error("/layers/0", "is odd") };
+        assert_eq!(problem.to_string(), "layers.cow: is odd");
+        assert_eq!(problem.clone().under("/a").to_string(), "a.layers.0: is odd");
+        assert_eq!(problem.at("").to_string(), "is odd");
+    }
 }

@@ -84,7 +84,7 @@ pub fn told(document: &Document, pointer: &str) -> String {
 
 /// A problem with the address of its place, for people.
 pub fn of_problem(document: &Document, problem: &Problem) -> Problem {
-    Problem { path: told(document, &problem.path), address: None, ..problem.clone() }
+    problem.clone().at(told(document, &problem.path))
 }
 
 /// One step of an address.

@@ -97,9 +97,7 @@ pub fn of_layer(document: &Document, name: Option<&str>) -> Result<(&'static Sty
 /// Whether a table of one's own fits at `path`; what is wrong has its place in the table.
 fn fits_into(document: &Document, edit: &Edit, path: &str) -> Result<(), String> {
     let Err(problems) = document.apply(edit) else { return Ok(()) };
-    let own = |problem: &Problem| {
-        Some(Problem { path: Pointer(&problem.path).below(path)?.to_owned(), address: None, ..problem.clone() })
-    };
+    let own = |problem: &Problem| Some(problem.clone().at(Pointer(&problem.path).below(path)?));
     problems.iter().find_map(own).map_or(Ok(()), |problem| Err(problem.to_string()))
 }
 

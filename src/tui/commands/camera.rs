@@ -159,8 +159,7 @@ fn unmade(state: &State, fitted: Fitted) -> Result<[DVec3; 2], String> {
     let layers: Vec<_> = in_space.filter_map(|layer| layer.technique().synth(&making, None).ok()).collect();
     let meshes = |ways: &[DVec3]| materials.meshes.values().filter_map(|mesh| mesh.reach(ways)).reduce(farther);
     let all = |ways: &[DVec3]| if layers.is_empty() { meshes(ways) } else { reach(&layers, TIMES, ways) };
-    let told =
-        |problem: &Problem| Problem { severity: Severity::Error, path: String::new(), ..problem.clone() }.to_string();
+    let told = |problem: &Problem| Problem { severity: Severity::Error, ..problem.clone().at("") }.to_string();
     let why = || problems.first().map_or(NOTHING.to_owned(), told);
     fitted(&all, frame_size(scene, &materials)).ok_or_else(why)
 }
