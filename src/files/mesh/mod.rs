@@ -93,13 +93,7 @@ pub fn decode(
 /// # Errors
 /// As [`decode`], as far as what it lists shows.
 pub fn pictures(file: File, place: &str, options: &Options) -> Result<Vec<String>> {
-    let Options { limits, allow_outside: outside } = options;
-    let budget = &limits.budget();
-    let (kind, bytes, _share) = whole(file, place, limits, budget)?;
-    match kind {
-        Format::Obj => Ok(Vec::new()),
-        Format::Gltf => gltf::named(&bytes, With { place, limits, budget, sibling: &alone, outside: *outside }),
-    }
+    told_by_gltf(file, place, options, gltf::named)
 }
 
 /// The looks of the model in an open file. An OBJ names its materials in another file, which is not read.
@@ -107,13 +101,7 @@ pub fn pictures(file: File, place: &str, options: &Options) -> Result<Vec<String
 /// # Errors
 /// As [`pictures`].
 pub fn looks(file: File, place: &str, options: &Options) -> Result<Looks> {
-    let Options { limits, allow_outside: outside } = options;
-    let budget = &limits.budget();
-    let (kind, bytes, _share) = whole(file, place, limits, budget)?;
-    match kind {
-        Format::Obj => Ok(Looks::default()),
-        Format::Gltf => gltf::looks(&bytes, With { place, limits, budget, sibling: &alone, outside: *outside }),
-    }
+    told_by_gltf(file, place, options, gltf::looks)
 }
 
 /// The files that a model is made from besides its own, as a scene names them that names the model by `place`.
@@ -121,12 +109,22 @@ pub fn looks(file: File, place: &str, options: &Options) -> Result<Looks> {
 /// # Errors
 /// As [`pictures`].
 pub fn parts(file: File, place: &str, options: &Options) -> Result<Vec<String>> {
+    told_by_gltf(file, place, options, gltf::parts)
+}
+
+/// What a glTF tells of itself without the files that it names; an OBJ tells nothing of that.
+fn told_by_gltf<T: Default>(
+    file: File,
+    place: &str,
+    options: &Options,
+    read: impl FnOnce(&[u8], With) -> Result<T>,
+) -> Result<T> {
     let Options { limits, allow_outside: outside } = options;
     let budget = &limits.budget();
     let (kind, bytes, _share) = whole(file, place, limits, budget)?;
     match kind {
-        Format::Obj => Ok(Vec::new()),
-        Format::Gltf => gltf::parts(&bytes, With { place, limits, budget, sibling: &alone, outside: *outside }),
+        Format::Obj => Ok(T::default()),
+        Format::Gltf => read(&bytes, With { place, limits, budget, sibling: &alone, outside: *outside }),
     }
 }
 

@@ -8,6 +8,7 @@ use super::*;
 
 mod built;
 mod gltf;
+mod gltf_refused;
 mod obj;
 mod pictures;
 

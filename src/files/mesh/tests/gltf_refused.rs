@@ -1,0 +1,211 @@
+//! glTF files that are broken, cut short or mean too much: what is said of them.
+
+use serde_json::json;
+
+use super::built::{changed, glb, put, square};
+use super::*;
+
+#[test]
+fn what_is_wrong_is_told_by_its_number() {
+    const AGAIN: &str = "(export it again)";
+    const OUTSIDE: &str =
+        "not in the model's folder (give --allow-outside, or copy the file beside the model and mend its uri)";
+    for (pointer, value, expected) in [
+        ("/meshes", json!([]), format!("there is no mesh 0: there are 0 {AGAIN}")),
+        ("/nodes", json!([{}]), "has no triangles (name a mesh with faces)".to_owned()),
+        (
+            "/nodes/0/scale",
+            json!([0, 0, 0]),
+            "node 0 is scaled to nothing, itself or by one that it is in (mend its scale, and export it again)"
+                .to_owned(),
+        ),
+        (
+            "/meshes/0/primitives/0/mode",
+            json!(1),
+            "has only points and lines, which are not drawn (export it with its faces)".to_owned(),
+        ),
+        ("/scene", json!(7), format!("there is no scene 7: there are 1 {AGAIN}")),
+        ("/scenes/0/nodes", json!([1]), format!("there is no node 1: there are 1 {AGAIN}")),
+        ("/scenes/0/nodes", json!([0, 0]), format!("node 0 is in the scene twice {AGAIN}")),
+        ("/nodes/0/children", json!([0]), format!("node 0 is in the scene twice {AGAIN}")),
+        (
+            "/nodes/0/matrix",
+            json!([1e308, 0, 0, 0, 0, 1e308, 0, 0, 0, 0, 1, 0, 1e308, 0, 0, 1]),
+            format!("accessor 0: its node moves it out of all bounds {AGAIN}"),
+        ),
+        ("/accessors/0/bufferView", json!(9), format!("there is no buffer view 9: there are 4 {AGAIN}")),
+        ("/accessors/0/type", json!("VEC4"), format!("accessor 0 is VEC4, and VEC3 was expected {AGAIN}")),
+        ("/accessors/0/componentType", json!(5124), format!("accessor 0: there is no type of numbers 5124 {AGAIN}")),
+        ("/accessors/0/count", json!(3), format!("accessor 1 has 4 elements for 3 positions {AGAIN}")),
+        (
+            "/accessors/1/byteOffset",
+            json!(4),
+            format!("accessor 1 has 4 elements: its buffer view 1 is too short {AGAIN}"),
+        ),
+        (
+            "/accessors/1/byteOffset",
+            json!(u64::MAX),
+            format!("accessor 1 has 4 elements: its buffer view 1 is too short {AGAIN}"),
+        ),
+        (
+            "/accessors/3/count",
+            json!(u64::MAX),
+            format!("accessor 3 has {} elements: its buffer view 3 is too short {AGAIN}", u64::MAX),
+        ),
+        (
+            "/accessors/0/count",
+            json!(1_u64 << 40),
+            format!("accessor 0 has {} elements: its buffer view 0 is too short {AGAIN}", 1_u64 << 40),
+        ),
+        (
+            "/accessors/0",
+            json!({ "componentType": 5126, "count": 30_000_000, "type": "VEC3" }),
+            "accessor 0 has 30000000 elements that are not stored, at most 10000000 are allowed \
+             (make it smaller, or give --limit triangles=30000000)"
+                .to_owned(),
+        ),
+        (
+            "/accessors/0",
+            json!({
+                "componentType": 5126, "count": 10_000_001, "type": "VEC3",
+                "sparse": { "count": 1, "indices": { "bufferView": 3, "componentType": 5121 }, "values": { "bufferView": 0 } },
+            }),
+            "accessor 0 has 10000001 elements that are not stored, at most 10000000 are allowed \
+             (make it smaller, or give --limit triangles=10000001)"
+                .to_owned(),
+        ),
+        ("/accessors/3/count", json!(7), format!("accessor 3 has 7 elements: its buffer view 3 is too short {AGAIN}")),
+        ("/accessors/3/componentType", json!(5120), format!("accessor 3 is not of whole numbers {AGAIN}")),
+        ("/accessors/3/componentType", json!(5126), format!("accessor 3 is not of whole numbers {AGAIN}")),
+        (
+            "/bufferViews/3/byteStride",
+            json!(u64::MAX),
+            format!("accessor 3 has 6 elements: its buffer view 3 is too short {AGAIN}"),
+        ),
+        ("/bufferViews/3/byteOffset", json!(u64::MAX), format!("buffer view 3 reaches beyond its buffer {AGAIN}")),
+        ("/bufferViews/3/buffer", json!(1), format!("there is no buffer 1: there are 1 {AGAIN}")),
+        ("/buffers/0/byteLength", json!(200), "is cut short (copy it again from where it came)".to_owned()),
+        ("/buffers/0/uri", json!("data:,a"), "has a part that is not in base64 (export it again as .glb)".to_owned()),
+        (
+            "/buffers/0/uri",
+            json!("data:a/b;base64,=?"),
+            "has a part that is not in base64 (export it again as .glb)".to_owned(),
+        ),
+        (
+            "/buffers/0/uri",
+            json!("https://x.org/a.bin"),
+            "has a part at https://x.org/a.bin, which Plica does not fetch \
+             (export it as .glb, which is one file)"
+                .to_owned(),
+        ),
+        ("/buffers/0/uri", json!("../x.bin"), format!("has a part at ../x.bin, which is {OUTSIDE}")),
+        ("/buffers/0/uri", json!("a/%2e%2e/x.bin"), format!("has a part at a/%2e%2e/x.bin, which is {OUTSIDE}")),
+        ("/buffers/0/uri", json!("/x.bin"), format!("has a part at /x.bin, which is {OUTSIDE}")),
+        ("/buffers/0/uri", json!("%ff.bin"), format!("has a part at %ff.bin, which is no path {AGAIN}")),
+        ("/accessors/0/sparse", json!({ "count": 5 }), format!("accessor 0: 5 of 4 elements differ {AGAIN}")),
+        (
+            "/accessors/0/sparse",
+            json!({ "count": 1, "indices": { "bufferView": 2, "componentType": 5123, "byteOffset": 6 }, "values": {} }),
+            format!("accessor 0: there is no element 16256: there are 4 {AGAIN}"),
+        ),
+        ("/asset/version", json!("1.0"), "is glTF 1.0 (Plica reads glTF 2.0: export it again as .glb)".to_owned()),
+        (
+            "/extensionsRequired",
+            json!(["KHR_texture_transform", "KHR_draco_mesh_compression"]),
+            "needs the extension KHR_draco_mesh_compression, which Plica does not read \
+             (unpack it: gltf-transform cp a.glb a-plain.glb)"
+                .to_owned(),
+        ),
+        (
+            "/extensionsRequired",
+            json!(["EXT_mesh_gpu_instancing"]),
+            "needs the extension EXT_mesh_gpu_instancing, which Plica does not read \
+             (export it again without that extension)"
+                .to_owned(),
+        ),
+        (
+            "/nodes/0/mesh",
+            json!(-1),
+            format!("is not a glTF file: line 1, column 103: invalid value: integer `-1`, expected usize {AGAIN}"),
+        ),
+    ] {
+        assert_eq!(
+            changed(&[(pointer, value.clone())]).unwrap_err(),
+            format!("a.glb: {expected}"),
+            "{pointer} {value}"
+        );
+    }
+    changed(&[("/extensionsRequired", json!(["KHR_mesh_quantization", "KHR_materials_unlit"]))]).unwrap();
+    let (json, mut binary) = square();
+    binary[..4].copy_from_slice(&f32::NAN.to_le_bytes());
+    let error = read("a.glb", &glb(&json, &binary)).unwrap_err();
+    assert_eq!(error, format!("a.glb: accessor 0: element 0 is not finite {AGAIN}"));
+}
+
+#[test]
+fn a_file_that_is_cut_short_says_so() {
+    let (json, binary) = square();
+    let whole = glb(&json, &binary);
+    for length in 4..whole.len() {
+        let error = read("a.glb", &whole[..length]).unwrap_err();
+        assert_eq!(error, "a.glb: is cut short (copy it again from where it came)", "{length}");
+    }
+    let text = json.to_string();
+    for length in 1..text.len() {
+        let error = read("a.gltf", &text.as_bytes()[..length]).unwrap_err();
+        assert_eq!(error, "a.gltf: is cut short (copy it again from where it came)", "{length}");
+    }
+    assert_eq!(read("a.gltf", text.as_bytes()).unwrap_err(), "a.gltf: buffer 0 is not in the file (export it again)");
+    assert_eq!(
+        read("a.gltf", b"{}").unwrap_err(),
+        "a.gltf: is not a glTF file: it has no asset.version (Plica reads glTF 2.0: export it again as .glb)"
+    );
+    let mut old = whole.clone();
+    old[4] = 1;
+    assert!(read("a.glb", &old).unwrap_err().contains("is a .glb of version 1"));
+    let mut odd = whole;
+    odd[16] = b'X';
+    assert!(read("a.glb", &odd).unwrap_err().contains("does not begin with its JSON"));
+}
+
+#[test]
+fn a_small_file_that_means_much_is_refused() {
+    let limits = Limits { memory: 16 << 20, ..Limits::default() };
+    let braces = format!("{{\"asset\":{{\"version\":\"2.0\"}},\"nodes\":[{}]}}", vec!["{}"; 20_000].join(","));
+    // Many nodes show a mesh of many parts.
+    let (mut json, binary) = square();
+    let many = vec![json!({ "attributes": { "POSITION": 0 } }); 1000];
+    put(&mut json, "/meshes/0/primitives", json!(many));
+    put(&mut json, "/nodes", json!(vec![json!({ "mesh": 0 }); 1000]));
+    put(&mut json, "/scenes/0/nodes", json!((0..1000).collect::<Vec<_>>()));
+    let parts = glb(&json, &binary);
+    let (mut json, binary) = square();
+    let (indices, values) = (json!({ "bufferView": 3, "componentType": 5121 }), json!({ "bufferView": 0 }));
+    let sparse = json!({ "count": 1, "indices": indices, "values": values });
+    put(
+        &mut json,
+        "/accessors/0",
+        json!({ "componentType": 5126, "count": 1_000_000, "type": "VEC3", "sparse": sparse }),
+    );
+    put(&mut json, "/meshes/0/primitives/0", json!({ "attributes": { "POSITION": 0 }, "mode": 5 }));
+    let zeros = glb(&json, &binary);
+    for bytes in [braces.into_bytes(), parts, zeros] {
+        let error = read_with("a.glb", &bytes, &[], &limits).unwrap_err();
+        assert!(error.contains("of memory besides"), "{error}");
+    }
+}
+
+#[test]
+fn triangles_are_counted_before_anything_is_made_for_a_node() {
+    let (mut json, binary) = square();
+    put(&mut json, "/meshes/0/primitives", json!(vec![json!({ "attributes": { "POSITION": 0 } }); 1000]));
+    put(&mut json, "/nodes", json!(vec![json!({ "mesh": 0 }); 11_000]));
+    put(&mut json, "/scenes/0/nodes", json!((0..11_000).collect::<Vec<_>>()));
+    // For the document alone.
+    let limits = Limits { memory: 32 << 20, ..Limits::default() };
+    assert_eq!(
+        read_with("a.glb", &glb(&json, &binary), &[], &limits).unwrap_err(),
+        "a.glb: has 11000000 triangles, at most 10000000 are allowed \
+         (make it smaller, or give --limit triangles=11000000)"
+    );
+}
