@@ -7,6 +7,7 @@ pub mod atlas;
 pub mod breaks;
 pub mod bundle;
 pub mod check;
+pub mod clock;
 pub mod counts;
 pub mod field;
 pub mod fold;

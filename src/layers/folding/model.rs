@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use super::anchor::Anchor;
 use super::anchors::anchors;
-use super::position::{Clock, Position};
+use super::clock::Clock;
+use super::position::Position;
 use super::{fold::Fold, interpolation::Interpolation, outline::Outline, tools::Tool};
 use crate::base::geometry::Xy;
 use crate::layers::timeline::Wrap;

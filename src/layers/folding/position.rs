@@ -7,7 +7,6 @@ use serde_json::{Value, json};
 use crate::base::maths::{TAU, cos, exp, expm1, sin, tanh};
 use crate::base::problem::Problem;
 use crate::layers::keyframes::{self, Between};
-use crate::layers::timeline::Wrap;
 
 /// A position function: where along its jump path a sampler is at each local time τ. 0 is its own pixel, 1 the end.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -145,31 +144,6 @@ fn three() -> f64 {
 }
 fn ten() -> f64 {
     10.0
-}
-
-/// A zone's clock: scene time to s.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Clock {
-    /// s = p(τ).
-    pub position: Position,
-    /// Passes in one timeline.
-    pub speed: f64,
-    /// Temporal shift in timelines.
-    pub shift: f64,
-    /// What follows the end.
-    pub wrap: Wrap,
-}
-
-impl Clock {
-    /// Local time τ in [0, 1] at `scene_time`.
-    pub fn tau(&self, scene_time: f64) -> f64 {
-        self.wrap.wrap(self.speed * (scene_time + self.shift))
-    }
-
-    /// The place s along the jump path at `scene_time`.
-    pub fn s(&self, scene_time: f64) -> f64 {
-        self.position.eval(self.tau(scene_time))
-    }
 }
 
 /// What a position function is made of.
@@ -449,11 +423,5 @@ mod tests {
             let found = parse(json).eval(tau);
             assert!((found - s).abs() < 1e-8, "{json} at {tau}: {found}, not {s}");
         }
-    }
-
-    #[test]
-    fn a_clock_wraps_before_it_evaluates() {
-        let clock = Clock { position: Position::Linear, speed: -1.0, shift: 0.25, wrap: Wrap::Repeat };
-        assert_eq!(clock.s(0.25), 0.5);
     }
 }

@@ -2,9 +2,9 @@
 
 use kurbo::{Point, Vec2};
 
+use super::clock::Clock;
 use super::field::{Inputs, Pixel, Prepared};
 use super::model::{PictureLayer, Zone};
-use super::position::Clock;
 use super::synth::source;
 use crate::base::problem::Problem;
 use crate::layers::parts::moment::CENTER;

@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use kurbo::Vec2;
 
+use super::clock::Clock;
 use super::field::{self, Field, Inputs, Prepared};
 use super::model::{PictureLayer, Sampler, Zone};
-use super::position::Clock;
 use crate::base::budget::Share;
 use crate::base::clip::Clip;
 use crate::base::geometry::vector;
