@@ -185,6 +185,9 @@ fn what_of_a_model_cannot_be_read_is_told() {
     std::fs::write(at("from/bare.gltf"), gltf("parts/square.bin", "gone.png")).unwrap();
     std::fs::write(at("from/far.gltf"), gltf("../square.bin", "parts/skin.png")).unwrap();
     std::fs::write(at("from/out.gltf"), gltf("parts/square.bin", "../cat.png")).unwrap();
+    let unwrapped = gltf("parts/square.bin", "parts/skin.png").replace(r#","TEXCOORD_0":1"#, "");
+    assert!(!unwrapped.contains("TEXCOORD"));
+    std::fs::write(at("from/unwrapped.gltf"), unwrapped).unwrap();
     std::fs::write(at("square.bin"), square()).unwrap();
     std::fs::write(at("flat0.obj"), "v 0 0 0\nf 1 1 1\n").unwrap();
     std::fs::create_dir(at("dir.obj")).unwrap();
@@ -218,6 +221,13 @@ fn what_of_a_model_cannot_be_read_is_told() {
             "the scene needs --allow-outside wherever",
             true,
         ),
+        (
+            &["new", "from/unwrapped.gltf"],
+            "its picture is not shown: the mesh has no texture coordinates (unwrap it)",
+            true,
+        ),
+        (&["check", "flat.obj"], "flat.obj: is a model, not a scene (plica edit flat.obj makes a scene of it)", false),
+        (&["render", "cat.png", "-o", "x.png"], "cat.png: is a picture, not a scene (plica edit cat.png", false),
         (&["new", "flat0.obj"], "nothing of the mesh \"flat0\" is seen: none of its triangles has an area", true),
         (&["new", "from/bare.gltf"], "from/bare.gltf: its picture is not shown: gone.png: there is no such file", true),
         (

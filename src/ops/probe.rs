@@ -346,6 +346,10 @@ mod tests {
         {
             assert_eq!(pixel_at(at, (4, 2)).ok(), pixel, "{at:?}");
         }
+        for (text, is_time) in [("0", true), ("1", true), ("0.25", true), ("7", false), ("-0.1", false), ("NaN", false)]
+        {
+            assert_eq!(parse_time(text).is_ok(), is_time, "{text}");
+        }
         assert!(parse_point("1,2").is_ok() && parse_point("1").is_err() && parse_point("1,inf").is_err());
     }
 }
