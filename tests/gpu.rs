@@ -331,7 +331,7 @@ fn every_technique_answers_everything() {
     let mut gpu = gpu();
     let mut probed = BTreeSet::new();
     for (kind, scene, materials) in examples_of_all() {
-        // Where strokes end, a hair's breadth decides.
+        // At the edges of strokes single precision may decide otherwise.
         let most = if scene.layers.iter().any(|layer| layer.technique().sketched() != [""; 0]) { 0.005 } else { 0.001 };
         assert!(scene.layers.iter().any(|layer| layer.technique().kind().name == kind));
         let problems: Vec<_> = scene.layers.iter().map(|layer| layer.technique()).collect();

@@ -19,8 +19,6 @@ mod beside;
 pub mod cpu;
 #[cfg(feature = "window")]
 pub mod gpu;
-#[cfg(test)]
-mod inside;
 mod made;
 pub mod overlay;
 pub mod part;
@@ -31,6 +29,8 @@ pub mod samples;
 pub mod seams;
 pub mod shown;
 pub mod stage;
+#[cfg(test)]
+mod tests;
 mod whole;
 
 pub use made::Synth;

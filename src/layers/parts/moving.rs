@@ -43,9 +43,9 @@ pub struct Moving {
 /// How a thing is moved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Moved {
-    /// Its fields are moved one by one, as the schema tells of them, but for these, which are moved.
+    /// Only these of its fields are moved already; all others are to be moved one by one, as the schema tells of them.
     FieldsBut(&'static [&'static str]),
-    /// It is moved.
+    /// All of it is moved already.
     Whole,
 }
 

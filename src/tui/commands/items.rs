@@ -211,7 +211,7 @@ pub fn go_to(state: &mut State, pointer: &str) {
         }
     }
     state.settle();
-    // Windows follow.
+    // Windows show what is selected.
     state.ask(Effect::Show);
 }
 

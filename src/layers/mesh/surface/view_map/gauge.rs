@@ -129,7 +129,7 @@ impl<'a> Gauges<'a> {
         let [from, to] = near.limits.map(|at| at as usize);
         let mut gauge = near.gauge;
         for (view, limit) in &self.limits[from..to] {
-            // It tells at most everything.
+            // A view tells a share of at most 1, so that its limit bounds the product.
             if *limit > gauge {
                 gauge = gauge.max(limit * told(*view as usize));
             }
