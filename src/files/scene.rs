@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::{Limits, Options, paths, picture, through, write_atomic};
 use crate::base::error::{Error, Result};
+use crate::layers::parts::materials::List;
 use crate::scene::{Document, json};
 
 /// So many bytes tell whether a file is a scene.
@@ -66,8 +67,11 @@ fn other_kind(path: &Path) -> Option<&'static str> {
     if !path.is_file() || is_one(path) {
         return None;
     }
-    let is_model = paths::is_model(&path.to_string_lossy());
-    if is_model { Some("a model") } else { picture::is_one(path).then_some("a picture") }
+    match paths::kind_of(&path.to_string_lossy()) {
+        Some(List::Meshes) => Some("a model"),
+        Some(List::Clips) => Some("a clip"),
+        _ => picture::is_one(path).then_some("a picture"),
+    }
 }
 
 /// Whether a text is complete JSON.
