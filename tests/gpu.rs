@@ -24,7 +24,7 @@ use plica::export::textures::{self, Depth};
 use plica::files::{self, outputs::Guard};
 use plica::layers::KINDS;
 use plica::layers::folding::fold::Fold;
-use plica::layers::mesh::strokes::model::{Along, Anchor, By, Trim};
+use plica::layers::mesh::slots::strokes::model::{Along, Anchor, By, Trim};
 use plica::layers::parts::marks::View;
 use plica::layers::parts::materials::{List, Materials, Of, Use, What};
 use plica::layers::parts::plan::{Bind, Compute, Groups, Plan, Step};

@@ -211,7 +211,7 @@ fn a_pixel_is_explained() {
 fn blend_points_and_strokes_draw_from_it() {
     let mut blended = scene(0.0, &json!({}));
     let plica::layers::Layer::Mesh(mesh) = &mut blended.layers[0] else { panic!() };
-    let plica::layers::mesh::surface::Surface::ViewMap(map) = &mut mesh.surface else { panic!() };
+    let plica::layers::mesh::slots::Surface::ViewMap(map) = &mut mesh.surface else { panic!() };
     map.blend.points = serde_json::from_value(json!([{ "position": [0, 0.6, 4] }])).unwrap();
     let (base, shown) = (pass(&blended, "independent"), cpu::linear(&synth(&blended), 0.0));
     let same = |(a, b): (&Rgba, &Rgba)| (0..4).all(|c| (a[c] - b[c]).abs() < 1e-6);

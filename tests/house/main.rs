@@ -56,7 +56,7 @@ const OF_ONE_TECHNIQUE: &[&str] = &[
 ];
 
 /// The slots of a technique: each file or folder in one of these is named by the folder's `mod.rs` alone.
-const SLOTS: &[&str] = &["layers/mesh/surface/"];
+const SLOTS: &[&str] = &["layers/mesh/slots/"];
 
 /// The rungs of `tui/`: a file names only what stands in its own or to its left.
 const ORDER_TUI: [&str; 11] =

@@ -6,11 +6,12 @@ use glam::{DVec2, DVec3, Vec3};
 use kurbo::Vec2;
 use rayon::prelude::*;
 
+use super::added::Added;
+use super::drawing::{Given, ReadyDrawing};
 use super::model::Sides;
 use super::pose::Placed;
 use super::slot::{Place, Reader, StillSurface};
-use super::strokes::{self, Given};
-use super::surface;
+use super::slots;
 use super::synth::Synth;
 use crate::base::mesh::Mesh;
 use crate::base::pixels::Rgba;
@@ -150,9 +151,9 @@ impl<'a> Seen<'a> {
     }
 
     /// What its strokes are drawn from; `None` without a camera.
-    fn given(&self, ready: &strokes::Ready, surfaces: &Surfaces) -> Option<Given<'_>> {
+    fn given(&self, strokes: &dyn ReadyDrawing, surfaces: &Surfaces) -> Option<Given<'_>> {
         // Memory that nothing is written to is never touched.
-        let (creases, of_light) = (ready.has_creases(), ready.is_of_light());
+        let (normals, lights) = (strokes.needs_normals(), strokes.needs_light());
         let (width, count) = (self.moment.size_px.0.max(1), surfaces.depth.len());
         let mut given = Given {
             mesh: &self.synth.mesh,
@@ -180,10 +181,10 @@ impl<'a> Seen<'a> {
             let mut reader = self.surface.reader();
             self.view.spots(y, Columns::All, (&surfaces.depth[row], triangle), |x, spot| {
                 shaded[x] = self.shaded(&spot, &mut reader);
-                if creases {
+                if normals {
                     normal[x] = spot.normal.as_vec3();
                 }
-                if of_light {
+                if lights {
                     light[x] = self.lit(&spot);
                 }
             });
@@ -212,8 +213,8 @@ impl<'a> Seen<'a> {
 
     /// What its strokes are drawn from if nothing else is there.
     pub fn given_alone(&self) -> Option<Given<'_>> {
-        let ready = self.synth.strokes.as_deref()?;
-        self.by_itself(|surfaces| self.given(ready, surfaces))
+        let strokes = self.synth.strokes.as_deref()?;
+        self.by_itself(|surfaces| self.given(strokes, surfaces))
     }
 
     /// The frame of the layer alone, with its strokes.
@@ -235,9 +236,9 @@ impl Still for Seen<'_> {
     }
 
     fn strokes(&self, which: Which, surfaces: &Surfaces, out: &mut [Rgba]) {
-        let Some(ready) = self.synth.strokes.as_deref() else { return };
-        if let Some(given) = self.given(ready, surfaces) {
-            strokes::draw::pass(ready, &given, which, out);
+        let Some(strokes) = self.synth.strokes.as_deref() else { return };
+        if let Some(given) = self.given(strokes, surfaces) {
+            strokes.draw(&given, which, out);
         }
     }
 
@@ -253,7 +254,8 @@ impl Still for Seen<'_> {
     }
 
     fn pass(&self, pass: &Pass, y: usize, columns: Columns, depth: &mut [f64], out: &mut [Rgba]) {
-        if surface::PASSES.contains(pass) || surface::COLORS.contains(pass) {
+        let Added { passes, colors, .. } = slots::OF_SURFACES;
+        if passes.contains(pass) || colors.contains(pass) {
             // Other surfaces have nothing there, and hide what is behind them.
             let mut reader = self.surface.pass(pass);
             let mut read = |spot: &Spot| reader.as_mut().map_or([0.0; 4], |reader| reader(&spot.place()));

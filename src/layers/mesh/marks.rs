@@ -5,9 +5,9 @@ use glam::DVec3;
 use kurbo::Point;
 use rayon::prelude::*;
 
+use super::frame;
 use super::model::Sides;
 use super::synth::Synth;
-use super::{frame, strokes};
 use crate::layers::parts::marks::{Dot, Look, Mark, Overlay, Shape, View, When};
 use crate::layers::parts::moment::{CENTER, Columns, Moment};
 use crate::layers::space::eye::Eye;
@@ -51,10 +51,10 @@ const LENGTH: f64 = 0.015;
 pub fn marks(synth: &Synth, view: &View, moment: &Moment) -> Vec<Mark> {
     let placed = synth.pose.at(synth.time(moment));
     let mut marks = synth.surface.marks(view, moment, &placed);
-    if let Some(ready) = synth.strokes.as_deref().filter(|_| strokes::overlays::is_shown(view)) {
+    if let Some(strokes) = synth.strokes.as_deref().filter(|strokes| strokes.explains(view)) {
         let seen = frame::Seen::new(synth, moment);
         let given = seen.given_alone();
-        marks.extend(given.into_iter().flat_map(|given| strokes::overlays::marks(ready, &given, view)));
+        marks.extend(given.into_iter().flat_map(|given| strokes.marks(&given, view)));
     }
     let shown = [WIRES, NORMALS, BACKS].map(|name| view.shows(name));
     let Some(eye) = moment.eye.filter(|_| shown.contains(&true)) else { return marks };

@@ -1,23 +1,21 @@
-//! How the strokes of a mesh layer move with it, in numbers.
+//! How what is drawn on a mesh layer moves with it, in numbers.
 
-use std::sync::Arc;
-
+use super::drawing::{Given, Looking};
 use super::frame::Seen;
 use super::model::MeshLayer;
-use super::strokes::draw::main_noise;
-use super::strokes::measure::{self, Frame};
 use super::synth::Synth;
 use crate::base::problem::Problem;
 use crate::layers::parts::measures::Measures;
 use crate::layers::parts::moment::Moment;
 use crate::layers::ready::{Making, Ready as _};
+use crate::layers::space::eye::Eye;
 use crate::layers::space::fit;
 
 /// The measures of the strokes as the layer is at one time; `None` without strokes, without a camera, or once `step`, which is
 /// told how many frames are drawn of how many, says that it is cancelled.
 ///
 /// # Errors
-/// If something that the layer names is not there, or no mark is made of a noise; the path is relative to the layer.
+/// If something that the layer names is not there, or there is nothing to measure; the path is relative to the layer.
 pub fn measure(
     layer: &MeshLayer,
     making: &Making,
@@ -26,27 +24,12 @@ pub fn measure(
     step: &mut dyn FnMut(u64, u64) -> bool,
 ) -> Result<Option<Measures>, Problem> {
     let synth = Synth::new(layer, making, None)?;
-    let Some((ready, eye)) = synth.strokes.clone().zip(moment.eye) else { return Ok(None) };
-    let Some(of) = main_noise(&ready.strokes).map(str::to_owned) else {
-        return Err(Problem::error("/strokes/marks", "no mark is made of a noise: there is nothing to measure"));
-    };
-    let Some(middle) = fit::middle(&|ways| synth.reach(moment.t, ways)) else { return Ok(None) };
-    let ways = measure::ways(&ready);
-    // Given its strokes by any anchor, it shows the same surface.
-    let synth = Synth { strokes: Some(Arc::new((*ready).clone())), ..synth };
-    let mut done = 0;
-    let mut flatness = Vec::new();
-    let mut draw = |eye| {
+    let Some((strokes, eye)) = synth.strokes.as_deref().zip(moment.eye) else { return Ok(None) };
+    let middle = fit::middle(&|ways| synth.reach(moment.t, ways));
+    let mut see = |eye: Eye, make: &mut dyn FnMut(&Given)| {
         let moment = Moment { eye: Some(eye), ..*moment };
-        let seen = Seen::new(&synth, &moment);
-        let given = seen.given_alone().filter(|_| step(done, measure::frames(steps)))?;
-        if done == 0 {
-            flatness = ways.iter().map(|ready| measure::flatness_of(ready, &given)).collect();
-        }
-        done += 1;
-        Some(Frame::new(&ways, &given))
+        Seen::new(&synth, &moment).given_alone().iter().for_each(make);
     };
-    let Some(mut found) = measure::moves((&eye, middle), steps, &mut draw) else { return Ok(None) };
-    found.iter_mut().zip(flatness).for_each(|((_, figures), flatness)| figures.flatness = flatness);
-    Ok(step(done, done).then_some(Measures { of, ways: found }))
+    let looking = Looking { eye, middle, steps, see: &mut see, step };
+    strokes.measure(looking).map_err(|problem| problem.under("/strokes"))
 }

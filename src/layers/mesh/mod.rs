@@ -1,9 +1,10 @@
-//! A mesh in space, seen by the scene's camera. What its surface shows is a slot of its own (`surface/`).
+//! A mesh in space, seen by the scene's camera. What its surface shows, and what is drawn on that, are slots of its own
+//! (`slots/`).
 
+pub mod added;
 pub mod around;
 pub mod bundle;
-#[cfg(test)]
-mod checks;
+pub mod drawing;
 pub mod frame;
 pub mod marks;
 pub mod measure;
@@ -14,8 +15,7 @@ pub mod pose;
 pub mod probe;
 pub mod ready;
 pub mod slot;
-pub mod strokes;
-pub mod surface;
+pub mod slots;
 pub mod synth;
 mod unseen;
 
@@ -25,6 +25,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use kurbo::Rect;
 use serde_json::{Value, json};
 
+use self::drawing::Drawing;
 use self::model::MeshLayer;
 use super::parts::materials::{List, Materials, Of, Use, What};
 use super::parts::measures::Measures;
@@ -35,7 +36,7 @@ use super::parts::repeat::{self, Repeat};
 use super::parts::shots::{Laid, Laying, Lying};
 use super::parts::sketch::Sketch;
 use super::ready::{Making, Ready};
-use super::starts::{Shown, Starts, Template};
+use super::starts::{Shown, Template};
 use super::technique::{Bundle, Checked, Kind, Technique};
 use super::timeline::{Timeline, Wrap};
 use crate::base::problem::Problem;
@@ -44,21 +45,20 @@ use crate::base::problem::Problem;
 pub static KIND: Kind = Kind {
     name: "mesh",
     space: Space::World,
-    programs: &[&[&plan::PLAIN], surface::PROGRAMS, strokes::plan::PROGRAMS],
-    routines: strokes::emit::ROUTINES,
-    twins: &[plan::TWINS, surface::TWINS, strokes::upload::TWINS, strokes::emit::TWINS],
+    programs: &[&[&plan::PLAIN], slots::OF_SURFACES.programs, slots::OF_STROKES.programs],
+    routines: slots::OF_STROKES.routines,
+    twins: &[plan::TWINS, slots::OF_SURFACES.twins, slots::OF_STROKES.twins],
     bundle: Some(Bundle { names: bundle::names, write: bundle::write }),
     counted: &[],
-    overlays: &[marks::OVERLAYS, surface::OVERLAYS, strokes::overlays::OVERLAYS],
-    passes: &[strokes::passes::PASSES, surface::PASSES],
-    looks: &[marks::LOOKS, surface::LOOKS, strokes::overlays::LOOKS],
+    overlays: &[marks::OVERLAYS, slots::OF_SURFACES.overlays, slots::OF_STROKES.overlays],
+    passes: &[slots::OF_STROKES.passes, slots::OF_SURFACES.passes],
+    looks: &[marks::LOOKS, slots::OF_SURFACES.looks, slots::OF_STROKES.looks],
     template: Some(Template { of: List::Meshes, layer: template, ground: None }),
     blank: None,
-    // A new mark needs no noise.
-    starts: Starts { beyond: |_, list| (list == "marks").then(|| ("kind", "outline".into())), ..Starts::PLAIN },
+    starts: slots::OF_STROKES.starts,
     presets: &[],
-    styles: Some(&strokes::restyle::STYLES),
-    comparisons: strokes::restyle::COMPARISONS,
+    styles: slots::OF_STROKES.styles,
+    comparisons: slots::OF_STROKES.comparisons,
     example: include_str!("example.json"),
 };
 
@@ -68,10 +68,8 @@ fn template(shown: &Shown) -> Value {
     if shown.both_sides {
         layer["sides"] = "both".into();
     }
-    if let Some(image) = shown.image {
-        layer["surface"] = json!({ "kind": "texture", "image": image });
-    } else if let Some(color) = shown.color {
-        layer["surface"] = json!({ "kind": "plain", "color": color });
+    if let Some(surface) = slots::template(shown) {
+        layer["surface"] = surface;
     }
     layer
 }
@@ -97,8 +95,8 @@ impl Technique for MeshLayer {
             Problem::error("/surface", message).hint("make the surface plain, or unwrap the mesh")
         };
         let surface = without.filter(|_| self.surface.slot().needs_uv()).map(problem);
-        let strokes = self.strokes.as_ref().zip(without);
-        let strokes = strokes.and_then(|(own, triangle)| strokes::check::without_uv(own, &self.mesh, triangle));
+        let strokes = self.drawing().zip(without);
+        let strokes = strokes.and_then(|(own, triangle)| own.check_uv(&self.mesh, triangle));
         let fits = self.surface.slot().check_materials(materials).into_iter().map(|problem| problem.under("/surface"));
         let odd = materials.meshes.get(&self.mesh).into_iter().flat_map(|mesh| odd::warnings(self, mesh));
         let strokes = strokes.map(|problem| problem.under("/strokes"));
@@ -106,7 +104,7 @@ impl Technique for MeshLayer {
     }
 
     fn moves(&self) -> bool {
-        let (pose, redrawn) = (&self.pose, self.strokes.as_ref().is_some_and(|own| own.redraw > 0.0));
+        let (pose, redrawn) = (&self.pose, self.drawing().is_some_and(Drawing::moves));
         pose.spin != 0.0 || pose.bend.swing * pose.bend.degrees != 0.0 || redrawn
     }
 
@@ -133,38 +131,33 @@ impl Technique for MeshLayer {
         let mesh = Use { at: "/mesh".into(), of: Of::Name(List::Meshes, &self.mesh), what: What::Mesh };
         let surface = self.surface.slot().uses().into_iter();
         let surface = surface.map(|used| Use { at: format!("/surface{}", used.at), ..used });
-        let images = self.strokes.iter().flat_map(strokes::check::images);
-        let images = images.map(|(at, image)| Use {
-            at: format!("/strokes{at}"),
-            of: Of::Name(List::Images, image),
-            what: What::Picture,
-        });
-        std::iter::once(mesh).chain(surface).chain(images).collect()
+        let strokes = self.drawing().into_iter().flat_map(Drawing::uses);
+        let strokes = strokes.map(|used| Use { at: format!("/strokes{}", used.at), ..used });
+        std::iter::once(mesh).chain(surface).chain(strokes).collect()
     }
 
     fn automatic(&self, path: &str) -> Option<Value> {
-        self.strokes.as_ref()?.automatic(path.strip_prefix("/strokes")?)
+        self.drawing()?.automatic(path.strip_prefix("/strokes")?)
     }
 
     fn laid(&self, path: &str) -> Option<Vec<String>> {
-        self.strokes.as_ref()?.laid(path.strip_prefix("/strokes")?)
+        self.drawing()?.laid(path.strip_prefix("/strokes")?)
     }
 
     fn pass_names(&self, pass: &Pass) -> Vec<&str> {
-        let noises = self.strokes.iter().filter(|_| *pass == strokes::passes::NOISE).flat_map(|own| own.noises.keys());
-        noises.map(String::as_str).collect()
+        self.drawing().map(|own| own.pass_names(pass)).unwrap_or_default()
     }
 
     fn has_pass(&self, pass: &Pass) -> bool {
-        if surface::PASSES.contains(pass) { self.surface.slot().explains() } else { self.strokes.is_some() }
+        if slots::OF_SURFACES.passes.contains(pass) { self.surface.slot().explains() } else { self.strokes.is_some() }
     }
 
     fn sketched(&self) -> &'static [&'static str] {
-        if self.strokes.is_some() { strokes::sketch::OF } else { &[] }
+        self.drawing().map(Drawing::sketched).unwrap_or_default()
     }
 
     fn sketch(&self, path: &str) -> Option<Sketch> {
-        strokes::sketch::sketch(self.strokes.as_ref()?, path.strip_prefix("/strokes")?)
+        self.drawing()?.sketch(path.strip_prefix("/strokes")?)
     }
 
     fn item_name(&self, path: &str) -> Option<&str> {
@@ -182,7 +175,7 @@ impl Technique for MeshLayer {
     }
 
     fn lay(&self, pictures: &[Laid]) -> Option<Laying> {
-        surface::lay(&self.surface, pictures)
+        slots::lay(&self.surface, pictures)
     }
 
     fn model_to_world(&self, t: f64) -> Option<DAffine3> {

@@ -4,9 +4,9 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::drawing::Drawing;
 use super::pose::Pose;
-use super::strokes::{self, Strokes};
-use super::surface::Surface;
+use super::slots::{Strokes, Surface};
 use crate::base::geometry::Xyz;
 use crate::base::problem::Problem;
 
@@ -82,8 +82,13 @@ impl MeshLayer {
             problems.push(problem.hint("make it [0, -1, 0] for light from above"));
         }
         problems.extend(self.surface.slot().check().into_iter().map(|problem| problem.under("/surface")));
-        let drawn = self.strokes.iter().flat_map(strokes::check::problems);
+        let drawn = self.drawing().into_iter().flat_map(Drawing::check);
         problems.extend(drawn.map(|problem| problem.under("/strokes")));
         problems
+    }
+
+    /// What is drawn on it, if something is.
+    pub fn drawing(&self) -> Option<&dyn Drawing> {
+        self.strokes.as_ref().map(Strokes::slot)
     }
 }

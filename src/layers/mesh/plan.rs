@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 
+use super::drawing::{Given, ReadyDrawing};
 use super::model::Sides;
 use super::pose::Placed;
 use super::slot::{Look, Own};
-use super::strokes::{self, Given};
 use super::synth::Synth;
 use crate::base::pixels::Rgba;
 use crate::layers::parts::moment::Moment;
@@ -72,14 +72,14 @@ pub fn plan(synth: &Synth, moment: &Moment) -> Plan {
         let vertices = 3 * synth.mesh.triangles.len() as u32;
         Draw { vertices, depth: true, ..Draw::frame(program, binds) }
     };
-    let Some(ready) = synth.strokes.as_deref() else {
+    let Some(strokes) = synth.strokes.as_deref() else {
         return Plan::of([Draw { constants: look.constants, ..draw(look.program, look.binds) }]);
     };
     // Strokes hide all of its color: only its depths count.
     let surface = draw(&PLAIN, Vec::new());
-    let into = Some(strokes::plan::shown());
+    let into = Some(strokes.canvas());
     let facts = Draw { into, constants: look.constants, ..draw(look.facts, look.binds) };
-    let mut plan = on_it(synth, moment, (eye, &placed), (ready, &posed));
+    let mut plan = on_it(synth, moment, (eye, &placed), (strokes, &posed));
     plan.steps.splice(..0, [surface, facts].map(Step::Draw));
     plan
 }
@@ -89,7 +89,7 @@ fn on_it(
     synth: &Synth,
     moment: &Moment,
     (eye, placed): (Eye, &Placed),
-    (ready, posed): (&strokes::Ready, &dyn Fn() -> Vec<Bind>),
+    (strokes, posed): (&dyn ReadyDrawing, &dyn Fn() -> Vec<Bind>),
 ) -> Plan {
     let given = Given {
         mesh: &synth.mesh,
@@ -107,7 +107,7 @@ fn on_it(
         shaded: Vec::new(),
         light: Vec::new(),
     };
-    strokes::plan::plan(ready, &given, synth.light.ambient, posed)
+    strokes.plan(&given, synth.light.ambient, posed)
 }
 
 fn uniform(synth: &Synth, moment: &Moment, (eye, placed): (&Eye, &Placed), color: Rgba) -> Uniform {

@@ -2,7 +2,6 @@
 
 use super::frame::{Seen, Spot, View};
 use super::model::MeshLayer;
-use super::strokes;
 use super::synth::Synth;
 use crate::base::problem::Problem;
 use crate::layers::parts::moment::Moment;
@@ -37,10 +36,10 @@ pub fn probe(
 
 /// What its strokes are in a pixel, as if nothing hid the layer; nothing without strokes.
 fn of_strokes(synth: &Synth, (x, y): (usize, usize), moment: &Moment) -> Vec<Entry> {
-    let Some(ready) = synth.strokes.as_deref() else { return Vec::new() };
+    let Some(strokes) = synth.strokes.as_deref() else { return Vec::new() };
     let seen = Seen::new(synth, moment);
     let i = y * moment.size_px.0 + x;
-    seen.given_alone().map_or_else(Vec::new, |given| strokes::explain::entries(ready, &given, i))
+    seen.given_alone().map_or_else(Vec::new, |given| strokes.told(&given, i))
 }
 
 /// The triangle in column `x`, row `y` of what was synthesised.

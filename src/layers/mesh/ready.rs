@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use super::frame::Seen;
 use super::synth::Synth;
-use super::{around, marks, plan, probe, strokes};
+use super::{around, marks, plan, probe};
 use crate::base::geometry;
 use crate::base::pixels::Linear;
 use crate::base::problem::Problem;
@@ -28,8 +28,8 @@ impl Ready for Synth {
     }
 
     fn stoppable(&self, stop: &Arc<AtomicBool>) -> Option<Arc<dyn Ready>> {
-        let strokes = strokes::Ready { stop: Some(stop.clone()), ..(**self.strokes.as_ref()?).clone() };
-        Some(Arc::new(Synth { strokes: Some(Arc::new(strokes)), ..self.clone() }))
+        let strokes = Some(self.strokes.as_ref()?.stoppable(stop));
+        Some(Arc::new(Synth { strokes, ..self.clone() }))
     }
 
     fn has_strokes(&self) -> bool {
@@ -88,7 +88,7 @@ impl Ready for Synth {
     }
 
     fn reduced(&self, pictures: &mut Reduced) -> Arc<dyn Ready> {
-        let strokes = self.strokes.as_deref().map(|strokes| Arc::new(strokes.reduced(pictures.by)));
+        let strokes = self.strokes.as_ref().map(|strokes| strokes.reduced(pictures.by));
         Arc::new(Synth { surface: self.surface.clone().reduced(pictures), strokes, ..self.clone() })
     }
 

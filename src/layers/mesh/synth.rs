@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use kurbo::Vec2;
 
+use super::drawing::ReadyDrawing;
 use super::model::{Light, MeshLayer, Sides};
 use super::pose::Pose;
 use super::slot::ReadySurface;
-use super::strokes::{self, Strokes};
 use crate::base::mesh::Mesh;
 use crate::base::problem::Problem;
 use crate::layers::parts::moment::{CENTER, Moment};
@@ -29,7 +29,7 @@ pub struct Synth {
     /// The place in each pixel that is looked at.
     pub place: Vec2,
     /// The strokes that it is drawn with.
-    pub strokes: Option<Arc<strokes::Ready>>,
+    pub strokes: Option<Arc<dyn ReadyDrawing>>,
     /// Whether the pose stands still as it is at the beginning.
     pub still: bool,
 }
@@ -45,8 +45,8 @@ impl Synth {
         let shown = layer.surface.slot().synth(&mesh, making, before.map(|previous| &*previous.surface));
         let surface = shown.map_err(|problem| problem.under("/surface"))?;
         let before = before.and_then(|previous| previous.strokes.as_deref());
-        let ready = |own: &Strokes| strokes::Ready::new(own, &mesh, making, before).map(Arc::new);
-        let strokes = layer.strokes.as_ref().map(ready).transpose().map_err(|problem| problem.under("/strokes"))?;
+        let drawn = layer.drawing().map(|own| own.synth(&mesh, making, before));
+        let strokes = drawn.transpose().map_err(|problem| problem.under("/strokes"))?;
         Ok(Synth {
             strokes,
             mesh,

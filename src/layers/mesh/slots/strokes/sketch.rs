@@ -28,7 +28,7 @@ pub fn sketch(strokes: &Strokes, path: &str) -> Option<Sketch> {
         let noise = strokes.noises.get(item)?;
         return Some(Sketch::Patch(patch(strokes, noise)));
     }
-    let name = strokes.automatic(&(Pointer("/marks").join(item) + "/name")).filter(|_| list == "marks")?;
+    let name = strokes.value(&(Pointer("/marks").join(item) + "/name")).filter(|_| list == "marks")?;
     match strokes.marks.iter().find(|mark| name == mark.name.as_str()).and_then(Set::of)? {
         Set::Ink(ink) => Some(Sketch::Curve(curve(strokes, &ink))),
         Set::Pigment(_) | Set::Relief(_) | Set::Outline(_) => None,

@@ -11,10 +11,11 @@ use super::ready::Ready;
 use super::report;
 use super::view::View;
 use super::wanted::{laid_flat, misfits, wanted};
-use super::{atlas, bundle, check, lay, warnings};
+use super::{atlas, bundle, check, lay, marks, passes, plan, warnings};
 use crate::base::budget::Share;
 use crate::base::mesh::Mesh;
 use crate::base::problem::Problem;
+use crate::layers::mesh::added::Added;
 use crate::layers::mesh::slot::{Before, ReadySurface, Slot};
 use crate::layers::parts::bundle::Form;
 use crate::layers::parts::materials::{List, Materials, Of, Use, What};
@@ -25,6 +26,17 @@ use crate::layers::ready::Making;
 const LOOKED_BYTES: u64 = 4 * 24;
 /// The most cells of the finest layer.
 const MOST_CELLS: f64 = 16_777_216.0;
+
+/// What is known of them without a layer.
+pub const ADDED: Added = Added {
+    programs: &[&plan::SAMPLED],
+    twins: plan::TWINS,
+    overlays: &[marks::OVERLAY],
+    looks: &[&marks::CAMERA, &marks::WHOLE, &marks::GONE, &marks::BLEND],
+    passes: &[passes::INDEPENDENT, passes::DEPENDENT, passes::COVERAGE],
+    colors: &[passes::COLORS],
+    ..Added::NONE
+};
 
 impl Slot for ViewMap {
     fn check(&self) -> Vec<Problem> {

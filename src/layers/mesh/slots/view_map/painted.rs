@@ -67,7 +67,7 @@ fn borders((width, height): (usize, usize), counts: impl Fn(usize, usize) -> boo
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::layers::mesh::surface::view_map::tests::view;
+    use crate::layers::mesh::slots::view_map::tests::view;
 
     #[test]
     fn a_picture_lies_over_what_is_seen_with_what_counts_outlined() {

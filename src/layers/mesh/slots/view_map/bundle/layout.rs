@@ -2,7 +2,7 @@
 //! the next, so that one pair of texture coordinates leads to the cells of all layers.
 
 use crate::base::packing::{Packed, pack};
-use crate::layers::mesh::surface::view_map::cells::{Cell, Cells, Layer, NONE};
+use crate::layers::mesh::slots::view_map::cells::{Cell, Cells, Layer, NONE};
 
 /// The border of a chart, in cells of layer 0; of it, one cell of each layer beside its cells is filled.
 const BORDER: usize = 1;

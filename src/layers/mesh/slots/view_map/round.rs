@@ -77,7 +77,7 @@ mod tests {
 
     use super::*;
     use crate::layers::mesh::pose::Pose;
-    use crate::layers::mesh::surface::view_map::tests::view;
+    use crate::layers::mesh::slots::view_map::tests::view;
 
     #[test]
     fn where_a_ray_meets_the_sphere_is_told_as_extreme_points_are() {

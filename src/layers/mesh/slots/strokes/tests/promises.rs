@@ -8,16 +8,17 @@ use std::sync::Arc;
 use glam::{DMat3, DVec2, DVec3};
 use serde_json::{Value, json};
 
-use super::frame::Seen;
-use super::model::MeshLayer;
-use super::strokes::Given;
-use super::strokes::measure::{Frame, flatness_of};
-use super::strokes::noise::Scene;
-use super::strokes::tone::threshold;
-use super::synth::Synth;
+use super::super::measure::{Frame, flatness_of};
+use super::super::noise::Scene;
+use super::super::synth::Ready;
+use super::super::tone::threshold;
 use crate::base::maths::{TAU, atan2, cos, pow, sin};
 use crate::base::mesh::{Mesh, Vertex};
 use crate::base::statistics::{correlation, percentile};
+use crate::layers::mesh::drawing::Given;
+use crate::layers::mesh::frame::Seen;
+use crate::layers::mesh::model::MeshLayer;
+use crate::layers::mesh::synth::Synth;
 use crate::layers::parts::materials::Materials;
 use crate::layers::parts::moment::Moment;
 use crate::layers::parts::readout::{Entry, Value as Told};
@@ -78,6 +79,11 @@ fn synth(mesh: &Mesh, strokes: &Value) -> Synth {
     Synth::new(&layer(strokes), &Making::plain(Wrap::Repeat, &materials), None).unwrap()
 }
 
+/// Its strokes.
+fn ready_of(synth: &Synth) -> &Ready {
+    synth.strokes.as_deref().and_then(|strokes| strokes.downcast()).unwrap()
+}
+
 /// Looks at what is at the origin from this place in front of it, in a square frame of this side.
 fn moment(from: DVec3, side: usize) -> Moment {
     let middle_px = DVec2::splat(side as f64 / 2.0);
@@ -92,7 +98,7 @@ fn seen<R>(synth: &Synth, moment: &Moment, make: impl FnOnce(&Given) -> R) -> R 
 
 /// The values and the shares of the variance of the noise, on the pixels of the layer.
 fn noise(synth: &Synth, given: &Given) -> (Vec<f32>, Vec<f32>) {
-    let ready = synth.strokes.as_deref().unwrap();
+    let ready = ready_of(synth);
     let found = Scene::new(ready, given).noise(&ready.strokes.noises["a"]);
     let own = |values: Vec<f32>| values.into_iter().zip(&given.triangle).filter(|(_, t)| **t != NONE).map(|(v, _)| v);
     (own(found.value).collect(), own(found.share).collect())
@@ -111,7 +117,7 @@ type Found = BTreeMap<[u32; 3], (DVec2, f64)>;
 
 /// The impulses of a frame, with their places and their factors.
 fn impulses(synth: &Synth, moment: &Moment) -> Found {
-    let ready = synth.strokes.as_deref().unwrap();
+    let ready = ready_of(synth);
     seen(synth, moment, |given| {
         let found = Scene::new(ready, given).impulses(&ready.strokes.noises["a"]).unwrap().0;
         found.into_iter().map(|impulse| (impulse.of, (impulse.at, impulse.factor))).collect()
@@ -236,7 +242,7 @@ fn waves_are_as_long_and_run_as_they_should() {
 
 /// A frame of the noise itself.
 fn frame(synth: &Synth, moment: &Moment) -> Frame {
-    let ready = synth.strokes.as_deref().unwrap();
+    let ready = ready_of(synth);
     seen(synth, moment, |given| {
         let found = Scene::new(ready, given).noise(&ready.strokes.noises["a"]);
         Frame::of(given, vec![found.value])
@@ -311,7 +317,7 @@ fn strokes_are_as_strong_beside_silhouettes() {
     for seed in 1..=6 {
         let synth = synth(&ball(48, 24), &one(json!({ "seed": seed, "spacing": 8 })));
         seen(&synth, &moment(DVec3::Z * 2.6, side), |given| {
-            let ready = synth.strokes.as_deref().unwrap();
+            let ready = ready_of(&synth);
             let found = Scene::new(ready, given).noise(&ready.strokes.noises["a"]);
             let own = |x: usize, y: usize| given.triangle[y * side + x] != NONE;
             for (y, x) in (3..side - 3).flat_map(|y| (3..side - 3).map(move |x| (y, x))) {
@@ -327,7 +333,7 @@ fn strokes_are_as_strong_beside_silhouettes() {
 #[test]
 fn what_is_in_front_changes_nothing_beside_it() {
     let synth = synth(&ball(24, 12), &one(json!({})));
-    let ready = synth.strokes.as_deref().unwrap();
+    let ready = ready_of(&synth);
     let moment = moment(DVec3::Z * 2.6, 128);
     let alone = seen(&synth, &moment, |given| Scene::new(ready, given).noise(&ready.strokes.noises["a"]).value);
     let seen_again = Seen::new(&synth, &moment);
@@ -348,7 +354,7 @@ fn strokes_are_of_one_size_on_a_round_form() {
         let materials = Materials { meshes: [("m".to_owned(), Arc::new(mesh.clone()))].into(), ..Materials::default() };
         let making = Making { px_per_m: 60.0, ..Making::plain(Wrap::Repeat, &materials) };
         let synth = Synth::new(&layer(&strokes), &making, None).unwrap();
-        let ready = synth.strokes.as_deref().unwrap();
+        let ready = ready_of(&synth);
         seen(&synth, &moment(DVec3::Z * 2.6, 192), |given| flatness_of(ready, given).unwrap())
     });
     let [surface, screen, texture] = flatness;

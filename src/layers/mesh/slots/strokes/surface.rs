@@ -4,9 +4,9 @@ use std::sync::atomic::AtomicBool;
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::super::pose::Placed;
 use super::pieces::Pieces;
 use crate::base::mesh::Mesh;
+use crate::layers::mesh::pose::Placed;
 use crate::layers::space::eye::Eye;
 
 /// A mesh as one eye sees it.

@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use super::layout::Layout;
 use crate::base::mesh::Mesh;
-use crate::layers::mesh::surface::view_map::map::Map;
+use crate::layers::mesh::slots::view_map::map::Map;
 
 /// The text.
 pub fn text(map: &Map, layout: &Layout) -> String {

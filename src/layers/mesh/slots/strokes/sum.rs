@@ -353,7 +353,7 @@ fn trimmed(shown: &Shown, trim: Trim, impulse: &Impulse, y: usize, columns: Rang
 mod tests {
     use super::*;
     use crate::base::maths::{cos, exp, sin};
-    use crate::layers::mesh::strokes::curves::EDGE;
+    use crate::layers::mesh::slots::strokes::curves::EDGE;
 
     fn impulse(at: (f64, f64)) -> Impulse {
         Impulse {

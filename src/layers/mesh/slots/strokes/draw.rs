@@ -8,12 +8,14 @@ use super::ink::{Drawing, Sheet};
 use super::marks::Set;
 use super::model::{Force, Noise as Wanted, ToneOf};
 use super::noise::Scene;
+use super::passes;
 use super::rim::Pixels;
 use super::sum::Noise;
+use super::synth::Ready;
 use super::tone::{Range, brightness};
-use super::{Given, Ready, passes};
 use crate::base::pixels::{Rgba, linear_from_srgb, srgb_from_linear};
 use crate::base::simd::vectorised;
+use crate::layers::mesh::drawing::Given;
 use crate::layers::parts::pass::{COLOR, Which};
 use crate::layers::space::raster::NONE;
 

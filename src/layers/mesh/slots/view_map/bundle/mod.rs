@@ -223,7 +223,7 @@ fn turns(shown: &Texels, frames: &[Frame], (width, height): (usize, usize)) -> T
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::layers::mesh::surface::view_map::cells::{self, Cells};
+    use crate::layers::mesh::slots::view_map::cells::{self, Cells};
 
     #[test]
     fn what_is_too_large_says_what_would_fit() {

@@ -4,6 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 
+use super::emit;
 use super::ink::{Paint, linear};
 use super::marks::{Ink, Outline, Pigment, Relief, Set};
 use super::model::{Force, Ground, Side, ToneOf};
@@ -106,6 +107,7 @@ pub const TWINS: &[Twin] = &[
     twin!(Style: paper, fade, toward, ambient, dark, light, gamma, ground, count, by_light),
     twin!(Mark: color, scene, kind, noise, grain, rims, start, full, amount, soft, opacity, rim, grained, side, strength,
         even, half_width, vary, toward),
+    emit::TWIN,
 ];
 
 impl Sheet {

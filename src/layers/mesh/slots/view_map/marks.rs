@@ -165,7 +165,7 @@ fn around(views: &[View], number: usize, share: f64) -> Vec<Option<DVec3>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::layers::mesh::surface::view_map::tests::view;
+    use crate::layers::mesh::slots::view_map::tests::view;
 
     #[test]
     fn the_line_where_a_view_is_gone_is_where_its_extremes_say() {

@@ -1,35 +1,28 @@
-//! What a mesh shows on its surface. This file is the only list of kinds of surface; each is a file of its own.
+//! The slots of the mesh layer: what its surface shows, and what is drawn on that. This file is the only list of what goes
+//! there; each is a file or a folder of its own, that nothing else names.
 
 pub mod layer;
 pub mod plain;
+pub mod strokes;
 pub mod texture;
 pub mod view_map;
 
-use schemars::JsonSchema;
+use std::borrow::Cow;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 
+use super::added::Added;
+use super::drawing::Drawing;
 use super::slot::Slot;
-use crate::layers::parts::marks::{self, Overlay};
-use crate::layers::parts::pass::Pass;
-use crate::layers::parts::plan::Program;
 use crate::layers::parts::shots::{Laid, Laying};
-use crate::layers::parts::twin::Twin;
+use crate::layers::starts::Shown;
 
-/// The passes that kinds of surface add.
-pub const PASSES: &[Pass] = &[view_map::passes::INDEPENDENT, view_map::passes::DEPENDENT, view_map::passes::COVERAGE];
-/// What is looked at in place of one of them.
-pub const COLORS: &[Pass] = &[view_map::passes::COLORS];
-/// The programs that kinds of surface add.
-pub static PROGRAMS: &[&Program] = &[&view_map::plan::SAMPLED];
-
-/// What shaders of kinds of surface read.
-pub const TWINS: &[Twin] = view_map::plan::TWINS;
-
-/// The overlays that kinds of surface add, and their looks.
-pub static OVERLAYS: &[Overlay] = &[view_map::marks::OVERLAY];
-/// See [`OVERLAYS`].
-pub static LOOKS: &[&marks::Look] =
-    &[&view_map::marks::CAMERA, &view_map::marks::WHOLE, &view_map::marks::GONE, &view_map::marks::BLEND];
+/// What kinds of surface add to the technique.
+pub const OF_SURFACES: Added = view_map::slot::ADDED;
+/// What strokes add to it.
+pub const OF_STROKES: Added = strokes::slot::ADDED;
 
 /// What the surface of a mesh shows, told apart by `kind`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -63,8 +56,36 @@ impl Surface {
     }
 }
 
+/// The surface of a new layer that shows this; `None` if it need not be written.
+pub fn template(shown: &Shown) -> Option<Value> {
+    let image = shown.image.map(|image| json!({ "kind": "texture", "image": image }));
+    image.or_else(|| shown.color.map(|color| json!({ "kind": "plain", "color": color })))
+}
+
 /// How more pictures with cameras come to lie on a surface: it becomes one of a kind that can have them, if it is not.
 pub fn lay(surface: &Surface, pictures: &[Laid]) -> Option<Laying> {
     let first = (!matches!(surface, Surface::ViewMap(_))).then(|| ("/surface", view_map::lay::empty(pictures)));
     Some(view_map::lay::laying(pictures, first, "/surface/views"))
+}
+
+/// The strokes that a mesh is drawn with.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Strokes(strokes::force::Strokes);
+
+impl JsonSchema for Strokes {
+    fn schema_name() -> Cow<'static, str> {
+        strokes::force::Strokes::schema_name()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        strokes::force::Strokes::json_schema(generator)
+    }
+}
+
+impl Strokes {
+    /// As what is drawn on a mesh.
+    pub fn slot(&self) -> &dyn Drawing {
+        &self.0
+    }
 }

@@ -10,9 +10,10 @@ use super::impulse::Impulse;
 use super::marks::{Outline, Set};
 use super::noise::Scene;
 use super::rim::Rules;
-use super::{Given, Ready};
+use super::synth::Ready;
 use crate::base::maths::{TAU, cos, sin};
 use crate::base::pointer::Pointer;
+use crate::layers::mesh::drawing::Given;
 use crate::layers::parts::marks::{Dot, Look, Mark, Overlay, Shape, View, When};
 use crate::layers::space::raster::NONE;
 

@@ -72,11 +72,6 @@ impl Ready {
         Ok(Ready { strokes: strokes.clone(), pieces, curvatures, images, px_per_m, duration, scale: 1.0, stop })
     }
 
-    /// The same for frames that are so many times smaller on each side.
-    pub fn reduced(&self, by: usize) -> Ready {
-        Ready { scale: self.scale / by as f64, ..self.clone() }
-    }
-
     /// Whether its marks ask for normals.
     pub fn has_creases(&self) -> bool {
         self.strokes.marks.iter().any(|mark| mark.creases.is_some())

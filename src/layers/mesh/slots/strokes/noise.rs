@@ -8,7 +8,8 @@ use super::model::{Along, Anchor, By, Direction, Noise as Wanted, Trim as Ends, 
 use super::sum::{Noise, Shown, Trim, covers, sum};
 use super::surface::Surface;
 use super::synth::{Codes, Ready, SMOOTH, is_set};
-use super::{Given, even, flat, grid, visible};
+use super::{even, flat, grid, visible};
+use crate::layers::mesh::drawing::Given;
 
 /// A layer in one frame.
 pub struct Scene<'a> {

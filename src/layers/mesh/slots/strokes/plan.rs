@@ -11,8 +11,9 @@ use super::marks::{Outline, Set};
 use super::model::{Anchor, Noise as Wanted};
 use super::noise::Scene;
 use super::sum::{Trim, variance};
+use super::synth::Ready;
 use super::upload::{Layers, Mark, Noise, Rim, Sheet, Style};
-use super::{Given, Ready};
+use crate::layers::mesh::drawing::Given;
 use crate::layers::parts::plan::{Bind, Blend, COMMON, Canvas, Draw, Format, Plan, Program, Scratch, Step};
 
 /// The numbers of the textures. What the layer shows: its shaded colors, and `Facts` in frame.wgsl.

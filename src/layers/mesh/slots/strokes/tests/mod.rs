@@ -2,6 +2,8 @@
 
 use serde_json::{Value, json};
 
+mod promises;
+
 use super::check;
 use super::force::{self, Strokes, in_force};
 use super::marks::{Ink, Outline, Pigment, Set};
@@ -105,7 +107,7 @@ fn what_is_not_written_is_told() {
         ("/tone/dark", Some(json!(0.25))),
         ("/style", Some(json!("hatching"))),
     ] {
-        assert_eq!(found.automatic(path), expected, "{path}");
+        assert_eq!(found.value(path), expected, "{path}");
     }
     assert_eq!((found.place_of("cross"), found.place_of("line")), ("/marks/1".into(), "/marks".into()));
 }

@@ -7,10 +7,12 @@ use rayon::prelude::*;
 use super::draw::{grey, main_noise};
 use super::model::ANCHORS;
 use super::noise::Scene;
-use super::{Given, Ready};
+use super::synth::Ready;
 use crate::base::maths::{TAU, cos, pow, sin};
+use crate::base::problem::Problem;
 use crate::base::statistics::{Sums, correlation, median, percentile};
-use crate::layers::parts::measures::{Figures, Moved};
+use crate::layers::mesh::drawing::{Given, Looking};
+use crate::layers::parts::measures::{Figures, Measures, Moved};
 use crate::layers::space::eye::Eye;
 use crate::layers::space::raster::NONE;
 
@@ -33,13 +35,45 @@ const FLAT: (f64, f64) = (6.0, 24.0);
 /// The fewest windows of which flatness is told.
 const FEWEST: usize = 4;
 
+/// The measures of strokes.
+///
+/// # Errors
+/// If no mark is made of a noise; the path is relative to the strokes.
+pub fn measure(ready: &Ready, looking: Looking) -> Result<Option<Measures>, Problem> {
+    let Looking { eye, middle, steps, see, step } = looking;
+    let Some(of) = main_noise(&ready.strokes).map(str::to_owned) else {
+        return Err(Problem::error("/marks", "no mark is made of a noise: there is nothing to measure"));
+    };
+    let Some(middle) = middle else { return Ok(None) };
+    let ways = ways(ready);
+    let mut done = 0;
+    let mut flatness = Vec::new();
+    let mut draw = |eye| {
+        let mut frame = None;
+        see(eye, &mut |given| {
+            if !step(done, frames(steps)) {
+                return;
+            }
+            if done == 0 {
+                flatness = ways.iter().map(|ready| flatness_of(ready, given)).collect();
+            }
+            done += 1;
+            frame = Some(Frame::new(&ways, given));
+        });
+        frame
+    };
+    let Some(mut found) = moves((&eye, middle), steps, &mut draw) else { return Ok(None) };
+    found.iter_mut().zip(flatness).for_each(|((_, figures), flatness)| figures.flatness = flatness);
+    Ok(step(done, done).then_some(Measures { of, ways: found }))
+}
+
 /// Strokes by each anchor.
-pub fn ways(ready: &Ready) -> Vec<Ready> {
+fn ways(ready: &Ready) -> Vec<Ready> {
     ANCHORS.map(|(anchor, _)| Ready { strokes: ready.strokes.anchored(anchor), ..ready.clone() }).to_vec()
 }
 
 /// How many frames a measure of so many steps draws.
-pub fn frames(steps: u32) -> u64 {
+fn frames(steps: u32) -> u64 {
     1 + MOVES.len() as u64 * u64::from(steps)
 }
 
@@ -115,7 +149,7 @@ fn moved(eye: &Eye, middle: DVec3, name: &str, steps: u32) -> Eye {
 }
 
 /// Measures the moves of each anchor. `draw` makes the frame that a camera sees, or `None` if it is cancelled.
-pub fn moves(
+fn moves(
     (eye, middle): (&Eye, DVec3),
     steps: u32,
     draw: &mut dyn FnMut(Eye) -> Option<Frame>,

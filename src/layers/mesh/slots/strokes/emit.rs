@@ -20,7 +20,7 @@ use crate::layers::space::upload::{VERTICES, lines, matrix, packed};
 /// Threads of a group, which are the pieces of a block.
 const WIDE: usize = 256;
 
-const SOURCE: &[&str] = &[include_str!("../posed.wgsl"), include_str!("aim.wgsl"), include_str!("emit.wgsl")];
+const SOURCE: &[&str] = &[include_str!("../../posed.wgsl"), include_str!("aim.wgsl"), include_str!("emit.wgsl")];
 
 static COUNT: Routine = Routine { name: "mesh/strokes/emit.wgsl", source: SOURCE, entry: "count" };
 static SCAN: Routine = Routine { name: "mesh/strokes/emit.wgsl", source: SOURCE, entry: "scan" };
@@ -59,9 +59,8 @@ struct Recipe {
 }
 
 /// What shaders read.
-pub const TWINS: &[Twin] =
-    &[twin!(Recipe: turn, light, overlap, axis, spread, size, middle, angle, drawn, unsure, turned, low,
-    high, half, focal, radius, spacing, reach, px_per_m, key, count, down)];
+pub const TWIN: Twin = twin!(Recipe: turn, light, overlap, axis, spread, size, middle, angle, drawn, unsure, turned, low,
+    high, half, focal, radius, spacing, reach, px_per_m, key, count, down);
 
 /// Where a plan has what impulses are made of and what becomes of them: the numbers of its scratch.
 pub struct Places {

@@ -10,7 +10,8 @@ use super::ink::Sheet;
 use super::marks::Set;
 use super::noise::Scene;
 use super::sum::Noise;
-use super::{Given, Ready};
+use super::synth::Ready;
+use crate::layers::mesh::drawing::Given;
 use crate::layers::parts::readout::{Entry, Value};
 
 /// What is to be told of pixel number `i` of the frame, which shows the layer.

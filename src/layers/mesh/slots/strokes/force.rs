@@ -79,7 +79,7 @@ impl Strokes {
     }
 
     /// The value in force at `path`, relative to the strokes. Marks are at their names or where they are written.
-    pub fn automatic(&self, path: &str) -> Option<Value> {
+    pub fn value(&self, path: &str) -> Option<Value> {
         if path == "/style" {
             return Some(Value::from("hatching"));
         }
@@ -95,7 +95,7 @@ impl Strokes {
     }
 
     /// The names of the style's noises or marks.
-    pub fn laid(&self, path: &str) -> Option<Vec<String>> {
+    pub fn of_style(&self, path: &str) -> Option<Vec<String>> {
         let of = |list: &Value| match list {
             Value::Object(noises) => noises.keys().cloned().collect(),
             Value::Array(marks) => marks.iter().filter_map(|mark| Some(mark["name"].as_str()?.to_owned())).collect(),

@@ -4,10 +4,10 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use crate::base::pixels::{Grid, Linear, Rgba};
-use crate::layers::mesh::surface::view_map::cells::NONE;
-use crate::layers::mesh::surface::view_map::id::depth_of;
-use crate::layers::mesh::surface::view_map::map::Map;
-use crate::layers::mesh::surface::view_map::sample::{Reader, Spot};
+use crate::layers::mesh::slots::view_map::cells::NONE;
+use crate::layers::mesh::slots::view_map::id::depth_of;
+use crate::layers::mesh::slots::view_map::map::Map;
+use crate::layers::mesh::slots::view_map::sample::{Reader, Spot};
 
 /// How far what triangles cover is repeated round them, in texels.
 const PADDING: usize = 4;
