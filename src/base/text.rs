@@ -27,6 +27,19 @@ pub fn bytes(count: u64) -> String {
     unit.map_or_else(|| format!("{count} bytes"), |(unit, name)| format!("{:.1} {name}", count as f64 / unit))
 }
 
+/// A number with a noun: `1 row`, `3 rows`.
+pub fn counted(count: impl std::fmt::Display, name: &str) -> String {
+    let count = count.to_string();
+    let end = if count == "1" { "" } else { "s" };
+    format!("{count} {name}{end}")
+}
+
+/// How many there are: `there is 1`, `there are 3`.
+pub fn there_are(count: impl std::fmt::Display) -> String {
+    let count = count.to_string();
+    format!("there {} {count}", if count == "1" { "is" } else { "are" })
+}
+
 /// How long something took: `3.4 s`.
 pub fn took(milliseconds: u64) -> String {
     match milliseconds {
@@ -81,6 +94,15 @@ mod tests {
             [(0, "just now"), (59, "59 s ago"), (60, "1 min ago"), (7200, "2 h ago"), (172_800, "2 days ago")]
         {
             assert_eq!(ago(seconds * 1000), text);
+        }
+    }
+
+    #[test]
+    fn nouns_follow_their_number() {
+        for (count, noun, sentence) in
+            [(0, "0 rows", "there are 0"), (1, "1 row", "there is 1"), (12, "12 rows", "there are 12")]
+        {
+            assert_eq!((counted(count, "row"), there_are(count)), (noun.to_owned(), sentence.to_owned()));
         }
     }
 

@@ -8,6 +8,7 @@ use super::{Context, opened::Unloaded, scene_options::SceneOptions};
 use super::{scene_options::RecoveryOptions, set};
 use crate::base::error::{Error, Result};
 use crate::base::problem;
+use crate::base::text::counted;
 use crate::export::album;
 use crate::files::outputs;
 use crate::layers::parts::album::Album;
@@ -66,7 +67,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
         (Some(folder), Some(place)) => {
             let names = album::write(&found, &place)?;
             let files: Vec<_> = names.iter().map(|name| folder.join(name)).collect();
-            let what = format!("{}, {} files", folder.display(), files.len());
+            let what = format!("{}, {}", folder.display(), counted(files.len(), "file"));
             context.done(&what, outputs::size(files.iter().map(PathBuf::as_path)), begun);
             Ok(())
         }

@@ -6,6 +6,7 @@ use std::time::Instant;
 use super::writing::Replacing;
 use super::{Context, opened::Unloaded, scene_options::SceneOptions};
 use crate::base::error::{Error, Result};
+use crate::base::text::counted;
 use crate::export::textures::{self, Depth, Forms, Names};
 use crate::files::outputs;
 
@@ -67,7 +68,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     if files.len() == 1 {
         context.messages.say("no layer has textures for other engines, so there is only the manifest");
     }
-    let count = if files.len() == 1 { "1 file".to_owned() } else { format!("{} files", files.len()) };
+    let count = counted(files.len(), "file");
     let what = format!("{}, {count}", args.output.display());
     context.done(&what, outputs::size(files.iter().map(PathBuf::as_path)), begun);
     Ok(())

@@ -9,6 +9,7 @@ use super::{Document, Edit};
 use crate::base::number;
 use crate::base::pointer::Pointer;
 use crate::base::problem::{Problem, quoted};
+use crate::base::text::counted;
 use crate::layers::parts::materials::{List, Of, What};
 use crate::layers::parts::shots::{Laid, Laying, SeenFrom, Shot};
 use crate::layers::starts::Shown;
@@ -125,7 +126,7 @@ fn laid(document: &Document, layer: usize, pictures: Vec<Picture>, once: bool) -
     }
     let there = wanted - laid.len();
     let there = if there > 0 { format!("; {there} lie there already") } else { String::new() };
-    let told = format!("{} laid on {}{there}", counted(laid.len()), technique.name());
+    let told = format!("{} laid on {}{there}", counted(laid.len(), "picture"), technique.name());
     if laid.is_empty() {
         return Ok(Applied { edit: Edit::default(), told });
     }
@@ -141,10 +142,6 @@ fn laid(document: &Document, layer: usize, pictures: Vec<Picture>, once: bool) -
 
 fn words(problems: &[Problem]) -> String {
     problems.first().map(Problem::to_string).unwrap_or_default()
-}
-
-fn counted(pictures: usize) -> String {
-    if pictures == 1 { "1 picture".into() } else { format!("{pictures} pictures") }
 }
 
 /// Whether the surface of a layer gives way to the first picture that lies there.
@@ -170,7 +167,7 @@ pub fn add(document: &Document, layer: usize, picture: Picture, base: Vec<Pictur
     let (count, pictures) = (base.len(), base.into_iter().chain([picture]).collect());
     let Applied { edit, .. } = laid(document, layer, pictures, false)?;
     let name = technique.name();
-    let told = format!("1 picture laid on {name}; {} of it as it was are its base coat", counted(count));
+    let told = format!("1 picture laid on {name}; {} of it as it was are its base coat", counted(count, "picture"));
     Ok(Applied { edit, told })
 }
 

@@ -10,6 +10,7 @@ use super::named::name_of;
 use super::schema::{Body, Place, Shape};
 use crate::base::number;
 use crate::base::pointer::{self, Pointer};
+use crate::base::text::counted;
 use crate::base::text::short;
 
 /// The most characters of a value in words.
@@ -200,7 +201,7 @@ fn words(shape: Option<Shape>, value: &Value) -> String {
         (_, Value::Array(items)) if items.iter().all(Value::is_number) && items.len() <= 4 => {
             items.iter().map(number).collect::<Vec<_>>().join(", ")
         }
-        (_, Value::Array(items)) => format!("{} item{}", items.len(), if items.len() == 1 { "" } else { "s" }),
+        (_, Value::Array(items)) => counted(items.len(), "item"),
         (_, Value::String(text)) if text.is_empty() => "\"\"".into(),
         (_, Value::String(text)) => text.clone(),
         (_, Value::Null) => "none".into(),

@@ -11,6 +11,7 @@ use crate::base::budget::Budget;
 use crate::base::error::{Error, Result};
 use crate::base::mesh::builder::{Builder, Corner, Counts};
 use crate::base::mesh::normals::unit;
+use crate::base::text::{counted, there_are};
 use crate::files::Limits;
 use crate::files::limits::within;
 
@@ -159,12 +160,12 @@ impl List {
         let (digits, back) = word.strip_prefix(b"-").map_or((word, false), |digits| (digits, true));
         let number = whole(digits).ok_or_else(|| format!("{} is not a whole number", quoted(word)))?;
         match (number, back) {
-            (u64::MAX, _) => Err(format!("{} is out of range: there are {total}", quoted(word))),
+            (u64::MAX, _) => Err(format!("{} is out of range: {}", quoted(word), there_are(total))),
             (0, _) => Err(format!("there is no {name} 0: they are counted from 1")),
             (1.., false) if number <= *total => Ok((number - 1) as u32),
             (1.., true) if number <= *read => Ok((read - number) as u32),
-            (1.., false) => Err(format!("there is no {name} {number}: there are {total}")),
-            (1.., true) => Err(format!("there is no {name} -{number}: there are {read} before this line")),
+            (1.., false) => Err(format!("there is no {name} {number}: {}", there_are(total))),
+            (1.., true) => Err(format!("there is no {name} -{number}: {} before this line", there_are(read))),
         }
     }
 }
@@ -242,7 +243,7 @@ impl<'a> Line<'a> {
             match words.next() {
                 Some(word) => *number = finite(word).map_err(|what| self.wrong(what))?,
                 None if at < least => {
-                    let expected = if least == 1 { "1 number".to_owned() } else { format!("{least} numbers") };
+                    let expected = counted(least, "number");
                     let found = if at == 1 { "is".to_owned() } else { "are".to_owned() };
                     return Err(self.wrong(format!("{what} has at least {expected}, here {found} {at}")));
                 }

@@ -21,6 +21,7 @@ use crate::base::budget::Share;
 use crate::base::error::{Error, Result};
 use crate::base::pixels::{Frame, Linear, side_by_side};
 use crate::base::problem::Problem;
+use crate::base::text::counted;
 use crate::export::animation::matrix::Matrix;
 use crate::export::animation::{Show, Target, range, rate::Rate, scale};
 use crate::files::outputs::{self, Place};
@@ -170,7 +171,7 @@ fn frame_size(args: &Args, opened: &Opened) -> Result<(usize, usize)> {
 /// What was written, in words.
 fn what(place: &str, files: &[Place], todo: &[Numbered], skipped: usize) -> String {
     let skipped = if skipped > 0 { format!(" ({skipped} were there already)") } else { String::new() };
-    let frames = if todo.len() == 1 { "1 frame".to_owned() } else { format!("{} frames", todo.len()) };
+    let frames = counted(todo.len(), "frame");
     match files {
         [_] if skipped.is_empty() => place.to_owned(),
         _ => format!("{place}, {frames}{skipped}"),

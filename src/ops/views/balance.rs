@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use crate::base::error::Result;
+use crate::base::text::counted;
 use crate::ops::opened::Opened;
 use crate::ops::scene_options::{RecoveryOptions, SceneOptions};
 use crate::ops::sprites::none;
@@ -43,7 +44,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
         Ok(Edit::all(gains.iter().map(edit)))
     };
     let elsewhere = set::change(&args.scene, (&args.recovery, &args.reading), make)?;
-    context.messages.say(&format!("the gains of {} views are set", gains.len()));
+    context.messages.say(&format!("the gains of {} are set", counted(gains.len(), "view")));
     if elsewhere {
         context.messages.say("that was in the editor that has the scene open; save it there");
     }

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use super::command::{Call, Command, Done, command};
 use super::items::targets;
-use super::yanking::counted;
+use crate::base::text::counted;
 use crate::scene::{address, compared};
 use crate::tui::events::Effect;
 use crate::tui::state::State;

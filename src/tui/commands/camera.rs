@@ -4,10 +4,10 @@ use glam::{DMat3, DVec3};
 use serde_json::{Value, json};
 
 use super::command::{Call, Command, Done, command};
-use super::yanking::counted;
 use crate::base::geometry::{Xyz, farther};
 use crate::base::number;
 use crate::base::problem::{Problem, Severity};
+use crate::base::text::counted;
 use crate::files::materials::{self, Cache};
 use crate::layers::Layer;
 use crate::layers::parts::materials::Materials;

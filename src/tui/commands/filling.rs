@@ -7,9 +7,10 @@ use kurbo::Vec2;
 use serde_json::Value;
 
 use super::command::{Call, Command, Done, command};
-use super::yanking::{counted, too_many};
+use super::yanking::too_many;
 use crate::base::number;
 use crate::base::problem::quoted;
+use crate::base::text::counted;
 use crate::scene::{Document, Edit, address, field};
 use crate::tui::document::cell::{Cell, Part};
 use crate::tui::document::csv;

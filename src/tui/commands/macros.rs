@@ -1,6 +1,7 @@
 //! Runs recorded lines again: macros, and `.` for the last change. A line that cannot be done ends them.
 
 use super::command::{Call, Command, Done, command};
+use crate::base::text::counted;
 use crate::tui::state::{Mode, State};
 use crate::tui::text::said::Said;
 
@@ -13,7 +14,7 @@ pub const COMMANDS: &[Command] = &[
 fn record(state: &mut State, call: &Call) -> Done {
     if call.text.is_empty() {
         let (letter, lines) = state.memory.recorder.end_macro().ok_or("no macro is being recorded: qa begins a")?;
-        let lines = if lines == 1 { "1 line".into() } else { format!("{lines} lines") };
+        let lines = counted(lines, "line");
         state.say(format!("macro {letter} has {lines}: @{letter} plays it"));
         return Ok(());
     }

@@ -7,8 +7,8 @@ use serde_json::Value;
 
 use super::command::{Call, Command, Done, command};
 use super::items::{alike, bearable, go_to, insert_entries, owned, target};
-use super::yanking::counted;
 use crate::base::pointer::Pointer;
+use crate::base::text::counted;
 use crate::layers::parts::materials::List;
 use crate::scene::{Edit, field, json};
 use crate::tui::document::cell::Cell;

@@ -1,7 +1,8 @@
 //! Sends the selected rows through a program of the person's, and takes what it gives back.
 
 use super::command::{Call, Command, Done, Table, command};
-use super::yanking::{counted, table};
+use super::yanking::table;
+use crate::base::text::counted;
 use crate::scene::address;
 use crate::tui::document::sheet::Sheet;
 use crate::tui::document::{csv, rows};

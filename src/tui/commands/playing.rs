@@ -30,7 +30,10 @@ fn frame(state: &mut State, call: &Call) -> Done {
         number => number.parse().map_err(|_| format!("there is no frame {number}"))?,
     };
     if to >= frames {
-        return Err(format!("there are {frames} frames, from 0"));
+        return Err(match frames {
+            1 => "there is 1 frame: 0".to_owned(),
+            _ => format!("there are {frames} frames, from 0"),
+        });
     }
     state.play.playing = false;
     state.play.time = state.timeline().time_of(to);

@@ -3,9 +3,9 @@
 use serde_json::Value;
 
 use super::command::{Call, Command, Done, command};
-use super::yanking::counted;
 use crate::base::number;
 use crate::base::pointer::Pointer;
+use crate::base::text::counted;
 use crate::files::{clips, paths};
 use crate::layers::parts::materials::List;
 use crate::scene::field::{self, Kind};

@@ -6,8 +6,8 @@ use serde_json::{Map, Value};
 
 use super::command::{Call, Command, Done, command};
 use super::items::{alike, owned};
-use super::yanking::counted;
 use crate::base::pointer::Pointer;
+use crate::base::text::counted;
 use crate::base::{maths, number};
 use crate::layers::shapes::handles::{Handles, ends_kept, handled, resampled};
 use crate::scene::insert::is_closed;

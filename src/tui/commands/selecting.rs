@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use super::command::{Call, Command, Done, command};
 use super::items::{alike, rows};
-use super::yanking::counted;
 use crate::base::pointer::Pointer;
+use crate::base::text::counted;
 use crate::tui::events::Effect;
 use crate::tui::state::cursor::Selection;
 use crate::tui::state::{Pane, State, entry};

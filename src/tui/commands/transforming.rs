@@ -4,10 +4,10 @@ use kurbo::{Affine, Point, Rect, Vec2};
 
 use super::command::{Call, Command, Done, command};
 use super::items::targets;
-use super::yanking::counted;
 use crate::base::expression::{Variables, evaluate};
 use crate::base::maths;
 use crate::base::problem::quoted;
+use crate::base::text::counted;
 use crate::scene::{Edit, address, transform};
 use crate::tui::state::State;
 use crate::tui::text::numbers::short;

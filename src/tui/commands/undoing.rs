@@ -1,5 +1,6 @@
 //! Undo and redo by steps and by time, and the list of steps.
 
+use crate::base::text::counted;
 use crate::tui::text::plain;
 use std::time::Duration;
 
@@ -82,7 +83,7 @@ fn steps(state: &mut State, call: &Call, way: Way) -> Done {
     match count {
         0 => return Err(way.nothing.into()),
         1 => state.say(format!("{}: {words}", way.done)),
-        _ => state.say(format!("{count} steps {}, the last: {words}", way.done)),
+        _ => state.say(format!("{} {}, the last: {words}", counted(count, "step"), way.done)),
     }
     Ok(())
 }
@@ -103,7 +104,7 @@ fn travel(
     let (count, change) = by(&mut state.scene, time);
     let change = change.ok_or_else(|| format!("{} within {}", way.nothing, call.text))?;
     state.changed(change);
-    let steps = if count == 1 { "1 step".to_owned() } else { format!("{count} steps") };
+    let steps = counted(count, "step");
     state.say(format!("{steps} {}", way.done));
     Ok(())
 }
@@ -127,7 +128,9 @@ fn by_states(state: &mut State, times: usize, way: Way) -> Done {
     state.changed(change);
     match (straight, words) {
         (Some(1), Some(words)) => state.say(format!("{}: {}", way.done, plain(&words))),
-        (Some(count), Some(words)) => state.say(format!("{count} steps {}, the last: {}", way.done, plain(&words))),
+        (Some(count), Some(words)) => {
+            state.say(format!("{} {}, the last: {}", counted(count, "step"), way.done, plain(&words)))
+        }
         _ => say_state(state),
     }
     Ok(())

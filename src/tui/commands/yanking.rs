@@ -1,6 +1,7 @@
 //! Yanks a node or rows as JSON, or rows as CSV, and pastes them where they fit.
 
 use crate::base::pointer::Pointer;
+use crate::base::text::counted;
 use crate::tui::commands::adding::stem;
 use crate::tui::document::pointers::{is_item, item_of};
 use crate::tui::text::plain;
@@ -90,11 +91,6 @@ fn register(state: &mut State, call: &Call) -> Done {
 /// The message if the number of rows is neither one nor that of the selection.
 pub fn too_many(rows: usize, selected: usize) -> String {
     format!("{} over {selected} selected: paste one or {selected}, or end the selection (Esc)", counted(rows, "row"))
-}
-
-/// A number with a noun.
-pub fn counted(count: usize, name: &str) -> String {
-    if count == 1 { format!("1 {name}") } else { format!("{count} {name}s") }
 }
 
 /// The rows that become CSV: the selected ones, or in the tree all rows of the list.

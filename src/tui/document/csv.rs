@@ -1,5 +1,6 @@
 //! Pasted tables: their lines, fields and numbers, as spreadsheets and other programs write them.
 
+use crate::base::text::counted;
 use csv::{ReaderBuilder, Trim};
 
 /// A line of a pasted table.
@@ -75,7 +76,7 @@ pub fn records(text: &str) -> Result<Vec<Record>, String> {
     match records.iter().find(|record| record.fields.len() != count) {
         None => Ok(records),
         Some(other) => {
-            let (line, found) = (other.line, values(other.fields.len()));
+            let (line, found) = (other.line, counted(other.fields.len(), "value"));
             Err(format!("line {line} has {found}, the lines before have {count}"))
         }
     }
@@ -107,11 +108,6 @@ fn split(text: &str) -> Result<Vec<Record>, String> {
     };
     let records = reader.into_records().filter_map(Result::ok).map(record);
     Ok(records.filter(|record| record.fields.iter().any(|field| !field.is_empty())).collect())
-}
-
-/// This many values, in words.
-pub fn values(count: usize) -> String {
-    if count == 1 { "1 value".into() } else { format!("{count} values") }
 }
 
 #[cfg(test)]

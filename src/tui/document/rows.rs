@@ -9,11 +9,12 @@ use kurbo::Vec2;
 use serde_json::{Value, json};
 
 use super::cell::{Cell, Part, in_range};
-use super::csv::{Record, number, records, values};
+use super::csv::{Record, number, records};
 use super::sheet::{Row, Sheet};
 use crate::base::number;
 use crate::base::pointer::Pointer;
 use crate::base::problem::{nearest, quoted};
+use crate::base::text::counted;
 use crate::scene::field::{self, Kind};
 use crate::scene::{Document, Edit};
 use crate::tui::text::numbers;
@@ -169,7 +170,7 @@ impl<'a> Target<'a> {
         let enough = self.specimen.required.iter().all(|&i| plain.iter().take(count).any(|c| c.head == all[i].head));
         if count > plain.len() || !enough {
             let line = records.first().map_or(1, |record| record.line);
-            return Err(format!("line {line} has {}, but a row takes {}", values(count), self.wanted()));
+            return Err(format!("line {line} has {}, but a row takes {}", counted(count, "value"), self.wanted()));
         }
         let item = |record: &Record| {
             let cells = plain.iter().copied().zip(&record.fields).enumerate();

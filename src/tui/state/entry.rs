@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::base::expression;
 use crate::base::pointer::{Pointer, index};
+use crate::base::text::counted;
 use crate::tui::document::cell::in_range;
 use crate::tui::document::csv;
 use crate::tui::document::entry::Entry;
@@ -59,7 +60,7 @@ pub fn summed(state: &State) -> Option<String> {
     let rows = state.cursor.rows().len();
     let cells = if rows > MOST_SUMMED { Vec::new() } else { cells(state, &state.sheet()) };
     let numbers: Vec<f64> = cells.iter().filter_map(|(_, cell)| cell.number(state.document())).collect();
-    let all = format!("{rows} row{}", if rows == 1 { "" } else { "s" });
+    let all = counted(rows, "row");
     if cells.first().is_some_and(|(_, cell)| cell.is_number()) && !numbers.is_empty() {
         let sum: f64 = numbers.iter().sum();
         let mean = sum / numbers.len() as f64;

@@ -4,6 +4,7 @@
 use super::document::{Accessor, Part, Sparse};
 use super::source::Source;
 use crate::base::error::Result;
+use crate::base::text::{counted, there_are};
 use crate::files::limits::within;
 
 /// What a number is stored as.
@@ -133,7 +134,9 @@ impl Source<'_> {
         (0..differ as usize).try_for_each(|at| {
             let [element] = indices.get(at);
             if !(0.0..count as f64).contains(&element) {
-                return Err(self.wrong(format!("accessor {index}: there is no element {element}: there are {count}")));
+                return Err(
+                    self.wrong(format!("accessor {index}: there is no element {element}: {}", there_are(count)))
+                );
             }
             put(element as usize, values.get(at))
         })
@@ -176,7 +179,10 @@ impl Source<'_> {
             }
             _ => {
                 let view = part.buffer_view;
-                Err(self.wrong(format!("accessor {index} has {count} elements: its buffer view {view} is too short")))
+                Err(self.wrong(format!(
+                    "accessor {index} has {}: its buffer view {view} is too short",
+                    counted(count, "element")
+                )))
             }
         }
     }

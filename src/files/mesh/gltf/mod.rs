@@ -9,6 +9,7 @@ use crate::base::budget::Share;
 use crate::base::error::{Error, Result};
 use crate::base::mesh::builder::{Builder, Corner, Counts};
 use crate::base::mesh::normals::unit;
+use crate::base::text::{counted, there_are};
 use crate::files::limits::within;
 
 mod accessor;
@@ -153,7 +154,11 @@ impl<'a> Piece<'a> {
         let count = source.stored::<3>(positions)?.count;
         let same = |accessor: usize, found: u64| match found == count {
             true => Ok(()),
-            false => Err(source.wrong(format!("accessor {accessor} has {found} elements for {count} positions"))),
+            false => Err(source.wrong(format!(
+                "accessor {accessor} has {} for {}",
+                counted(found, "element"),
+                counted(count, "position")
+            ))),
         };
         if let Some(normals) = primitive.attributes.normal {
             same(normals, source.stored::<3>(normals)?.count)?;
@@ -212,7 +217,7 @@ impl<'a> Piece<'a> {
         source.numbers(indices, |at, [index]| corners[at] = index as u32)?;
         match corners.iter().find(|&&index| u64::from(index) >= self.count) {
             Some(index) => {
-                let what = format!("accessor {indices}: there is no vertex {index}: there are {}", self.count);
+                let what = format!("accessor {indices}: there is no vertex {index}: {}", there_are(self.count));
                 Err(source.wrong(what))
             }
             None => Ok((corners, share)),

@@ -23,7 +23,7 @@ pub(super) fn nodes<'a>(source: &'a Source) -> Result<Vec<(&'a Node, DAffine3)>>
         if std::mem::replace(&mut seen[index], true) {
             return Err(source.wrong(format!("node {index} is in the scene twice")));
         }
-        let transform = transform * own_transform(node);
+        let transform = transform * own_transform(source, index, node)?;
         found.push((node, transform));
         queue(&node.children, transform, &mut ahead);
     }
@@ -43,8 +43,7 @@ pub(super) fn flattened(source: &Source, nodes: &[(&Node, DAffine3)]) -> Result<
     let all = shown.clone().all(|one| is_gone(&one));
     let Some((node, _)) = shown.find(is_gone) else { return Ok(None) };
     let index = source.document.nodes.iter().position(|other| std::ptr::eq(other, *node)).unwrap_or_default();
-    let name = node.name.as_ref().map(|name| format!(" {}", quoted(name))).unwrap_or_default();
-    let what = format!("node {index}{name} is scaled to nothing, itself or by one that it is in");
+    let what = format!("{} is scaled to nothing, itself or by one that it is in", called(index, node));
     match all {
         true => Err(Error::at(source.with.place, what).cure("mend its scale, and export it again")),
         false => Ok(Some(what)),
@@ -65,14 +64,24 @@ fn roots(source: &Source) -> Result<Vec<usize>> {
     Ok(source.get(&document.scenes, document.scene.unwrap_or(0), "scene")?.nodes.clone())
 }
 
-fn own_transform(node: &Node) -> DAffine3 {
+/// A node in words: its number, and its name where it has one.
+fn called(index: usize, node: &Node) -> String {
+    let name = node.name.as_ref().map(|name| format!(" {}", quoted(name)));
+    format!("node {index}{}", name.unwrap_or_default())
+}
+
+fn own_transform(source: &Source, index: usize, node: &Node) -> Result<DAffine3> {
     if let Some(matrix) = &node.matrix {
-        return DAffine3::from_mat4(DMat4::from_cols_array(matrix));
+        return Ok(DAffine3::from_mat4(DMat4::from_cols_array(matrix)));
     }
-    let rotation = node.rotation.map(DQuat::from_array).filter(|rotation| rotation.length_squared() > 0.0);
-    DAffine3::from_scale_rotation_translation(
+    let rotation = node.rotation.map_or(DQuat::IDENTITY, DQuat::from_array);
+    if rotation.length_squared() == 0.0 {
+        let what = format!("{}: the rotation [0, 0, 0, 0] is none", called(index, node));
+        return Err(source.wrong(what).cure("write [0, 0, 0, 1], which turns nothing, or export it again"));
+    }
+    Ok(DAffine3::from_scale_rotation_translation(
         node.scale.map_or(DVec3::ONE, DVec3::from_array),
-        rotation.map_or(DQuat::IDENTITY, DQuat::normalize),
+        rotation.normalize(),
         node.translation.map_or(DVec3::ZERO, DVec3::from_array),
-    )
+    ))
 }

@@ -12,6 +12,7 @@ use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use super::document::{Buffer, Document, Text};
 use crate::base::budget::{Budget, Share};
 use crate::base::error::{Error, Result};
+use crate::base::text::there_are;
 use crate::files::Limits;
 use crate::files::mesh::input::{self, Opener};
 use crate::files::picture::kinds::command;
@@ -103,7 +104,7 @@ impl<'a> Source<'a> {
 
     /// What an index in the JSON means.
     pub(super) fn get<'t, T>(&self, list: &'t [T], index: usize, name: &str) -> Result<&'t T> {
-        list.get(index).ok_or_else(|| self.wrong(format!("there is no {name} {index}: there are {}", list.len())))
+        list.get(index).ok_or_else(|| self.wrong(format!("there is no {name} {index}: {}", there_are(list.len()))))
     }
 
     /// The bytes of a buffer.

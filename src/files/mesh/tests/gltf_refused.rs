@@ -20,12 +20,18 @@ fn what_is_wrong_is_told_by_its_number() {
                 .to_owned(),
         ),
         (
+            "/nodes/0/rotation",
+            json!([0, 0, 0, 0]),
+            "node 0: the rotation [0, 0, 0, 0] is none (write [0, 0, 0, 1], which turns nothing, or export it again)"
+                .to_owned(),
+        ),
+        (
             "/meshes/0/primitives/0/mode",
             json!(1),
             "has only points and lines, which are not drawn (export it with its faces)".to_owned(),
         ),
-        ("/scene", json!(7), format!("there is no scene 7: there are 1 {AGAIN}")),
-        ("/scenes/0/nodes", json!([1]), format!("there is no node 1: there are 1 {AGAIN}")),
+        ("/scene", json!(7), format!("there is no scene 7: there is 1 {AGAIN}")),
+        ("/scenes/0/nodes", json!([1]), format!("there is no node 1: there is 1 {AGAIN}")),
         ("/scenes/0/nodes", json!([0, 0]), format!("node 0 is in the scene twice {AGAIN}")),
         ("/nodes/0/children", json!([0]), format!("node 0 is in the scene twice {AGAIN}")),
         (
@@ -83,7 +89,7 @@ fn what_is_wrong_is_told_by_its_number() {
             format!("accessor 3 has 6 elements: its buffer view 3 is too short {AGAIN}"),
         ),
         ("/bufferViews/3/byteOffset", json!(u64::MAX), format!("buffer view 3 reaches beyond its buffer {AGAIN}")),
-        ("/bufferViews/3/buffer", json!(1), format!("there is no buffer 1: there are 1 {AGAIN}")),
+        ("/bufferViews/3/buffer", json!(1), format!("there is no buffer 1: there is 1 {AGAIN}")),
         ("/buffers/0/byteLength", json!(200), "is cut short (copy it again from where it came)".to_owned()),
         ("/buffers/0/uri", json!("data:,a"), "has a part that is not in base64 (export it again as .glb)".to_owned()),
         (
