@@ -101,13 +101,30 @@ impl fmt::Display for Problem {
     }
 }
 
-/// The name most like a word, if one is. Long words and long lists, which only a hostile file has, are not compared.
+/// The name most like a word, if one is: a few letters are wrong, or one begins with the other. Long words and long lists, which
+/// only a hostile file has, are not compared.
 pub fn like<'a>(word: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     const LONGEST: usize = 100;
     const MOST: usize = 1000;
+    /// The share of letters that have to agree: `rotation` is like `rotate`, `wind` is not like `wide`,
+    const LEAST: f64 = 0.6;
+    /// and where already the first is another: `rotation` is not like `position`.
+    const LEAST_OTHER: f64 = 0.79;
+    /// What each of the first letters counts beside that.
+    const FIRST: (usize, f64) = (4, 0.1);
+    /// Fewer letters than these are the beginning of too much.
+    const BEGUN: usize = 3;
     let comparable = known.take(MOST).filter(|name| name.len().max(word.len()) <= LONGEST);
-    let scored = comparable.map(|name| (strsim::normalized_damerau_levenshtein(word, name), name));
-    scored.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(likeness, _)| *likeness >= 0.5).map(|(_, name)| name)
+    let begins = |name: &str| {
+        word.len().min(name.len()) >= BEGUN && (name.starts_with(word) || !name.is_empty() && word.starts_with(name))
+    };
+    let scored = comparable.filter_map(|name| {
+        let alike = strsim::normalized_damerau_levenshtein(word, name);
+        let first = word.chars().zip(name.chars()).take(FIRST.0).take_while(|(a, b)| a == b).count();
+        let least = if first > 0 { LEAST } else { LEAST_OTHER };
+        (alike > least || begins(name)).then_some((alike + FIRST.1 * first as f64, name))
+    });
+    scored.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, name)| name)
 }
 
 /// `did you mean "this"?` where one is near, else all there are.
@@ -138,6 +155,26 @@ pub fn quoted(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_guess_that_is_no_help_is_none() {
+        let known = ["rotate", "position", "scale", "front view", "uv"];
+        for (word, guess) in [
+            ("rotation", Some("rotate")),
+            ("positon", Some("position")),
+            ("front", Some("front view")),
+            ("scales", Some("scale")),
+            ("relation", None),
+            ("osition", Some("position")),
+            ("scene", None),
+            ("up", None),
+            ("p", None),
+            ("", None),
+        ] {
+            assert_eq!(like(word, known.into_iter()), guess, "{word}");
+        }
+        assert_eq!(nearest("hat", ["cow"].into_iter()).as_deref(), Some("there is \"cow\""));
+    }
 
     #[test]
     fn a_problem_at_another_path_forgets_the_address_of_the_old_one() {

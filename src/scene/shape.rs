@@ -4,11 +4,13 @@
 
 use serde_json::{Map, Number, Value};
 
+use super::VERSION;
 use super::json_schema::{is_widest, range_text};
 use super::schema::{Body, Shape};
 use crate::base::change::Change;
 use crate::base::pointer;
 use crate::base::problem::{Problem, nearest, quoted, there_are};
+use crate::base::text::counted;
 
 /// At most this many problems are listed.
 const MAX_PROBLEMS: usize = 1000;
@@ -157,14 +159,13 @@ impl Walk {
             let count = items.len();
             let (few, bound) = if count < min { ("at least ", min) } else { ("at most ", max) };
             let few = if min == max { "" } else { few };
-            let wanted = format!("{few}{bound}");
-            let items = if bound == 1 { "item" } else { "items" };
+            let wanted = format!("{few}{}", counted(bound, "item"));
             let cure = match count {
                 0 if min > 0 => Some("add one".to_owned()),
                 _ if count > max && min < max => Some(format!("leave {} out", count - max)),
                 _ => None,
             };
-            self.report(format!("expected {wanted} {items}, found {count}"), cure);
+            self.report(format!("expected {wanted}, found {count}"), cure);
         }
         self.items(items, |walk, item| walk.value(shape, item));
     }
@@ -189,7 +190,8 @@ impl Walk {
         let known = || shape.fields().into_iter().flat_map(Map::keys).map(String::as_str);
         for name in shape.required().filter(|&name| !map.contains_key(name)) {
             let field = shape.property(None, name);
-            let hint = field.map(|field| format!("{}; {}", field.help().trim_end_matches('.'), expected(field)));
+            let value = |field| if name == "plica" { VERSION.to_string() } else { expected(field) };
+            let hint = field.map(|field| format!("write {}: {}", quoted(name), value(field)));
             self.report(format!("{} is missing", quoted(name)), hint);
         }
         if let Err((message, hint)) = one_of(shape, map) {
@@ -251,8 +253,9 @@ pub fn found(value: &Value) -> String {
         Value::Bool(value) => value.to_string(),
         Value::Number(number) => number.to_string(),
         Value::String(text) => format!("the text {}", quoted(text)),
-        Value::Array(items) if items.len() == 1 && items[0].is_number() => "a list of 1 number".into(),
-        Value::Array(items) if items.iter().all(Value::is_number) => format!("a list of {} numbers", items.len()),
+        Value::Array(items) if items.iter().all(Value::is_number) => {
+            format!("a list of {}", counted(items.len(), "number"))
+        }
         Value::Array(items) => format!("a list of {}", items.len()),
         Value::Object(_) => "an object".into(),
     }

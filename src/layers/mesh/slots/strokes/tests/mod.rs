@@ -140,7 +140,7 @@ fn what_is_wrong_is_told_with_its_place_and_the_cure() {
         ),
         (
             json!({ "marks": [{ "name": "light", "grain": { "noise": "bb", "amount": 1 } }] }),
-            "marks.0.grain.noise: the mark \"light\" is made of the noise \"bb\", which is not there (did you mean \"b\"?)",
+            "marks.0.grain.noise: the mark \"light\" is made of the noise \"bb\", which is not there (there are \"a\", \"b\", \"c\")",
         ),
         (
             json!({ "marks": [{ "name": "new" }] }),
