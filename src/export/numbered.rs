@@ -5,6 +5,9 @@ use std::path::{Path, PathBuf};
 use crate::base::error::{Error, Result};
 use crate::base::numbered;
 
+/// How the names of numbered frames end: as one sees them, and as light.
+pub const PICTURES: [&str; 2] = [".png", ".exr"];
+
 /// A file name with one frame number in it.
 #[derive(Debug, PartialEq)]
 pub struct Pattern {
@@ -53,7 +56,7 @@ mod tests {
     use super::*;
 
     fn parse(path: &str) -> Result<Option<Pattern>> {
-        Pattern::parse(Path::new(path), &[".png", ".exr"], "frames are pictures")
+        Pattern::parse(Path::new(path), &PICTURES, "frames are pictures")
     }
 
     #[test]

@@ -4,15 +4,13 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::Path;
 
-use super::numbered::Pattern;
+use super::numbered::{PICTURES, Pattern};
 use super::{floats, still};
 use crate::base::error::{Error, Result};
 use crate::base::pixels::{Frame, Linear};
 use crate::files::draft::DraftFile;
 use crate::files::outputs::{self, Guard, Kind, Place};
 use crate::files::write;
-
-const ENDINGS: [&str; 2] = [".exr", ".png"];
 
 /// The files of the frames of a pass, by their numbers.
 pub struct Files {
@@ -41,7 +39,7 @@ impl Files {
                 )));
             }
         };
-        let Some(pattern) = Pattern::parse(path, &ENDINGS, "passes are OpenEXR or PNG files")? else {
+        let Some(pattern) = Pattern::parse(path, &PICTURES, "passes are OpenEXR or PNG files")? else {
             let [number] = numbers else {
                 let cure = "--frames 0 renders the first, a pattern such as %04d.exr numbers them";
                 let what = format!("{} frames do not fit one file ({cure})", numbers.len());

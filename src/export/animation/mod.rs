@@ -5,7 +5,7 @@ use std::io::Write;
 use std::path::Path;
 
 use crate::base::error::{Error, Result};
-use crate::export::numbered::Pattern;
+use crate::export::numbered::{PICTURES, Pattern};
 use crate::files::draft::DraftFile;
 use crate::files::outputs::{Guard, Place};
 
@@ -37,7 +37,7 @@ impl Target {
     /// # Errors
     /// A wrong command line (for an unknown extension with the table of formats), or a file that the guard refuses.
     pub fn file(path: &Path, numbers: &[u64], guard: &mut Guard) -> Result<Self> {
-        if let Some(pattern) = Pattern::parse(path, &[".png"], "numbered frames are PNG files")? {
+        if let Some(pattern) = Pattern::parse(path, &PICTURES, "numbered frames are pictures")? {
             return Ok(Target(Goal::Sequence(sequence::Places::new(&pattern, numbers, guard)?)));
         }
         let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());

@@ -173,14 +173,20 @@ pub const FORMATS: &[Format] = &[
     },
 ];
 
+/// What frames keep as light, see [`crate::export::passes`].
+const LIGHT: Keeps =
+    Keeps { alpha: "kept, premultiplied", colors: "32-bit floats, linear", timing: "none", ending: "none" };
+
 /// Numbered files and a single picture, which have a row but are not formats of their own.
-const STILLS: [(&str, &str, Keeps); 2] = [
+const STILLS: [(&str, &str, Keeps); 4] = [
     (
         "%04d.png",
         "one numbered file per frame, each written as soon as it is done",
         Keeps { alpha: "kept", colors: "exact, tagged sRGB", timing: "none", ending: "none" },
     ),
     (".png", "a single frame", Keeps { alpha: "kept", colors: "exact, tagged sRGB", timing: "none", ending: "none" }),
+    ("%04d.exr", "the same as light, for compositing: OpenEXR", LIGHT),
+    (".exr", "a single frame as light", LIGHT),
 ];
 
 /// Every output: how it is named, what it is for, what it keeps.
