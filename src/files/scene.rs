@@ -6,7 +6,7 @@ use std::path::Path;
 use super::{Limits, Options, paths, picture, through, write_atomic};
 use crate::base::error::{Error, Result};
 use crate::layers::parts::materials::List;
-use crate::scene::{Document, json};
+use crate::scene::{Document, Scene, json};
 
 /// So many bytes tell whether a file is a scene.
 const HEAD: u64 = 512;
@@ -30,6 +30,12 @@ pub fn open(path: &Path, options: &Options) -> Result<Document> {
 pub fn parse(path: &Path, text: &str, options: &Options) -> Result<Document> {
     let refused = |problems| Error::Scene { file: path.display().to_string(), problems };
     Document::parse_under(text, options.rules()).map_err(refused)
+}
+
+/// What the scene at `path` lists of files, though its text has errors; standard input can be read only once.
+pub fn lists(path: &Path, options: &Options) -> Option<Scene> {
+    let text = (path != Path::new("-")).then(|| read_text(path, &options.limits));
+    Document::files_of(&text?.ok()?, &options.rules())
 }
 
 /// The text of the scene at `path`; `-` is standard input.

@@ -7,6 +7,7 @@ use super::render::room;
 use super::scene_options::SceneOptions;
 use crate::base::error::{Error, Result};
 use crate::base::problem::{Problem, Severity};
+use crate::base::text::counted;
 use crate::files::{self, materials::Cache};
 use crate::layers::parts::materials::Materials;
 use crate::render;
@@ -46,7 +47,6 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
         problems.iter().try_for_each(|problem| context.print(told(problem).as_ref().unwrap_or(problem)))?;
     }
     let warnings = problems.len() - errors;
-    let counted = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
     let what = match (errors, warnings) {
         (0, 0) => "no problems".to_owned(),
         (0, _) => counted(warnings, "warning"),
@@ -70,12 +70,24 @@ pub fn made(scene: &Scene, materials: &Materials) -> Vec<Problem> {
     layers.collect()
 }
 
+/// What is wrong with the files of a scene whose text has `problems`, where those do not tell.
+fn of_files(problems: &[Problem], args: &Args, options: &files::Options, context: &Context) -> Vec<Problem> {
+    let Some(scene) = files::scene::lists(&args.scene, options) else { return Vec::new() };
+    let mut cache = Cache::until(context.cancel.clone());
+    let (_, mut found) = files::materials::gather(&args.scene, &scene, options, &mut cache);
+    found.retain(|found| problems.iter().all(|known| known.path != found.path));
+    found
+}
+
 /// The problems, the warnings about loops that snap, and the document if it is one.
 fn problems(args: &Args, context: &Context) -> Result<(Vec<Problem>, Vec<Problem>, Option<Document>)> {
     let options = args.reading.options()?;
     let document = match context.document(&args.scene, &options) {
         Ok(document) => document,
-        Err(Error::Scene { problems, .. }) => return Ok((problems, Vec::new(), None)),
+        Err(Error::Scene { problems, .. }) => {
+            let found = of_files(&problems, args, &options, context);
+            return Ok((problems.into_iter().chain(found).collect(), Vec::new(), None));
+        }
         Err(error) => return Err(error),
     };
     let scene = document.scene();

@@ -14,6 +14,7 @@ use crate::base::number;
 use crate::base::pointer::Pointer;
 use crate::base::problem::{self, Problem};
 use crate::files::session::{Mode, Overwrite, Session, Taken};
+use crate::files::{Options, materials};
 use crate::preview::editor::script;
 use crate::scene::field::{self, Kind};
 use crate::scene::presets::Applied;
@@ -45,9 +46,11 @@ const BRIEF_MS: u64 = 5_000;
 /// Sets the values: in the editor that has the scene open, otherwise in the file.
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let lost = RefCell::default();
+    let options = args.reading.options()?;
     let make = |document: &Document| {
         let set = edit(document, &args.settings, &args.scene)?;
-        lost.replace(set.lost.into_iter().chain(set.edit.overruled(document)).collect::<Vec<_>>());
+        let remarks = set.remarks(document, &args.scene, &options);
+        lost.replace(remarks);
         Ok(set.edit)
     };
     let elsewhere = change(&args.scene, (&args.recovery, &args.reading), make)?;
@@ -158,23 +161,33 @@ fn settle(session: &mut Session, scene: &Path, recovery: &RecoveryOptions) -> Re
 pub struct Set {
     /// The edit.
     pub edit: Edit,
+    /// What it leads to.
+    pub after: Document,
     /// What a change of kind could not keep, one line each.
     pub lost: Vec<String>,
     /// How many places it sets.
     pub places: usize,
 }
 
+impl Set {
+    /// What is to be said of it, one line each: what is lost, what has no effect, and files that cannot be read.
+    pub fn remarks(&self, before: &Document, scene: &Path, options: &Options) -> Vec<String> {
+        let unread = materials::unread(scene, [before, &self.after], options);
+        let unread = unread.iter().map(|problem| address::of_problem(&self.after, problem).to_string());
+        self.lost.iter().cloned().chain(self.edit.overruled(before)).chain(unread).collect()
+    }
+}
+
 /// The edit that applies all of `settings` (`PATH=VALUE`), each to the result of those before it. One that is only right after
 /// another waits for that.
 pub fn edit(document: &Document, settings: &[String], scene: &Path) -> Result<Set> {
-    let mut document = document.clone();
-    let mut all = Set { edit: Edit::default(), lost: Vec::new(), places: 0 };
+    let mut all = Set { edit: Edit::default(), after: document.clone(), lost: Vec::new(), places: 0 };
     let mut waiting: Vec<&String> = settings.iter().collect();
     while !waiting.is_empty() {
         let (before, mut refusal) = (waiting.len(), None);
-        waiting.retain(|setting| match one(&document, setting, scene) {
-            Ok((after, set)) => {
-                document = after;
+        waiting.retain(|setting| match one(&all.after, setting, scene) {
+            Ok(set) => {
+                all.after = set.after;
                 all.edit = Edit::all([std::mem::take(&mut all.edit), set.edit]);
                 all.lost.extend(set.lost);
                 all.places += set.places;
@@ -193,11 +206,10 @@ pub fn edit(document: &Document, settings: &[String], scene: &Path) -> Result<Se
 }
 
 /// The document after one setting, and what that did to it.
-fn one(document: &Document, setting: &str, scene: &Path) -> Result<(Document, Set)> {
-    let mut document = document.clone();
-    let mut all = Set { edit: Edit::default(), lost: Vec::new(), places: 0 };
-    let setting = Setting::read(&document, setting)?;
-    let pointers = address::resolve_all(&document, setting.path)?;
+fn one(document: &Document, setting: &str, scene: &Path) -> Result<Set> {
+    let mut all = Set { edit: Edit::default(), after: document.clone(), lost: Vec::new(), places: 0 };
+    let setting = Setting::read(document, setting)?;
+    let pointers = address::resolve_all(document, setting.path)?;
     // Places that are written do not touch one another; others may begin what they share.
     let written = |pointer: &String| Pointer(pointer).parent().is_some_and(|at| document.json().pointer(at).is_some());
     let at_once = if pointers.iter().all(written) { pointers.len().max(1) } else { 1 };
@@ -205,18 +217,18 @@ fn one(document: &Document, setting: &str, scene: &Path) -> Result<(Document, Se
     for (k, some) in pointers.chunks(at_once).enumerate() {
         let mut edits = Vec::new();
         for (i, pointer) in some.iter().enumerate() {
-            let value = setting.value(&document, pointer, (k * at_once + i, all.places))?;
-            let (edit, lost) = Edit::set_told(&document, pointer, value);
-            all.lost.extend(lost.map(|lost| format!("{}: {lost}", address::address(&document, pointer))));
+            let value = setting.value(&all.after, pointer, (k * at_once + i, all.places))?;
+            let (edit, lost) = Edit::set_told(&all.after, pointer, value);
+            all.lost.extend(lost.map(|lost| format!("{}: {lost}", address::address(&all.after, pointer))));
             edits.push(edit);
         }
         let edit = Edit::all(edits);
-        document = document.apply(&edit).map_err(|problems| {
-            refused(scene, problems.iter().map(|problem| address::of_problem(&document, problem)).collect())
+        all.after = all.after.apply(&edit).map_err(|problems| {
+            refused(scene, problems.iter().map(|problem| address::of_problem(&all.after, problem)).collect())
         })?;
         all.edit = Edit::all([std::mem::take(&mut all.edit), edit]);
     }
-    Ok((document, all))
+    Ok(all)
 }
 
 /// A setting, taken apart.

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use serde::Deserialize;
-use serde_json::Value;
+use serde_json::{Map, Value};
 
-use super::{Scene, references, shape, sight};
+use super::{Scene, VERSION, references, shape, sight};
 use crate::base::budget::Budget;
 use crate::base::change::Change;
 use crate::base::pointer::Pointer;
@@ -71,6 +71,25 @@ pub fn read(json: &Value, rules: &Rules) -> Result<Read, Vec<Problem>> {
     // The check above covers what the types demand, and more; if they ever differ, the types decide.
     let scene = Scene::deserialize(json).map_err(|e| vec![Problem::error("", e.to_string())])?;
     check(scene.resolved(), None, rules)
+}
+
+/// A scene with nothing but the files that `json` lists, as far as that is right and within the rules.
+pub fn files(json: &Value, rules: &Rules) -> Option<Scene> {
+    let listed = [List::Images, List::Meshes, List::Clips].map(|list| list.words().0);
+    let listed = listed.into_iter().filter_map(|list| Some((list.to_owned(), json.get(list)?.clone())));
+    let mut bare: Map<String, Value> = listed.collect();
+    bare.insert("plica".into(), VERSION.into());
+    for problem in shape::check(&Value::Object(bare.clone())) {
+        let mut tokens = Pointer(&problem.path).tokens();
+        let (Some(list), entry) = (tokens.next(), tokens.next()) else { continue };
+        match (bare.get_mut(&*list).and_then(Value::as_object_mut), entry) {
+            (Some(entries), Some(entry)) => drop(entries.remove(&*entry)),
+            _ => drop(bare.remove(&*list)),
+        }
+    }
+    let mut scene = Scene::deserialize(Value::Object(bare)).ok()?;
+    scene.clips.retain(|_, clip| clip.count.is_none_or(|count| u64::from(count) <= rules.frames));
+    Some(scene)
 }
 
 /// Like [`read`], if `change` is how `json` differs from what `before` was read from: only that is looked at. JSON that

@@ -30,12 +30,22 @@ impl Document {
 
     /// The same under other rules than the default ones; later edits are checked by them too.
     pub fn parse_under(text: &str, rules: Rules) -> Result<Document, Vec<Problem>> {
-        let budget = Budget::new(rules.memory);
-        let needed = budget.try_take(json::bytes_of_text(text.as_bytes()));
-        let _share = needed.map_err(|short| vec![short.problem("")])?;
-        let mut json = json::parse(text).map_err(|problem| vec![problem])?;
-        migrate::migrate(&mut json).map_err(|problem| vec![problem])?;
+        let json = Document::json_of(text, &rules).map_err(|problem| vec![problem])?;
         Document::from_json_under(json, rules)
+    }
+
+    /// The files that a text names which is no document, so that what is wrong with them can be told too.
+    pub fn files_of(text: &str, rules: &Rules) -> Option<Scene> {
+        Document::json_of(text, rules).ok().and_then(|json| check::files(&json, rules))
+    }
+
+    /// The JSON of a text, in the current version.
+    fn json_of(text: &str, rules: &Rules) -> Result<Value, Problem> {
+        let needed = Budget::new(rules.memory).try_take(json::bytes_of_text(text.as_bytes()));
+        let _share = needed.map_err(|short| short.problem(""))?;
+        let mut json = json::parse(text)?;
+        migrate::migrate(&mut json)?;
+        Ok(json)
     }
 
     /// The document that `json` means; it must be of the current version.

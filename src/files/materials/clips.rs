@@ -9,7 +9,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::named::{Named, frames};
-use super::sources::{Allowed, Place, Sources, decode_picture, problem};
+use super::sources::{Allowed, Place, Sources, decode_picture, problem, still_shown};
 use super::store::{Loaded, Store};
 use crate::base::budget::Share;
 use crate::base::clip::Clip;
@@ -60,7 +60,7 @@ impl Sources<'_> {
                         Some(made)
                     }
                     Err(error) => {
-                        problems.push(problem(&named, self.no_folder(error, clip)));
+                        problems.push(still_shown(problem(&named, self.no_folder(error, clip)), old.is_some()));
                         old.cloned()
                     }
                 };
@@ -76,7 +76,7 @@ impl Sources<'_> {
                     Some(made(clip.fps, &pictures, frames.iter().map(|frame| frame.share.clone()).collect(), old))
                 }
                 Err(error) => {
-                    problems.push(problem(&named, error));
+                    problems.push(still_shown(problem(&named, error), old.is_some()));
                     old.cloned()
                 }
             };

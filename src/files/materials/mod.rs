@@ -14,7 +14,7 @@ use crate::base::picture::Picture;
 use crate::base::problem::{Problem, Severity};
 use crate::base::progress::Progress;
 use crate::layers::parts::materials::Materials;
-use crate::scene::{Scene, check};
+use crate::scene::{Document, Scene, check};
 
 mod clips;
 mod masks;
@@ -92,22 +92,39 @@ pub fn gather_copies(
 
 /// Width and height of every picture that `scene` names, from the headers alone, and which files cannot be read.
 pub fn sizes(scene_path: &Path, scene: &Scene, options: &Options) -> (BTreeMap<String, (usize, usize)>, Vec<Problem>) {
+    headers(scene_path, scene, options, |_| true)
+}
+
+/// Warnings on the files that `after` names, and `before` not at the same place, and that cannot be read.
+pub fn unread(scene_path: &Path, [before, after]: [&Document; 2], options: &Options) -> Vec<Problem> {
+    let is_new = |at: &str| before.json().pointer(at) != after.json().pointer(at);
+    let (_, problems) = headers(scene_path, after.scene(), options, |named| is_new(&named.at));
+    problems.into_iter().map(|problem| Problem { severity: Severity::Warning, ..problem }).collect()
+}
+
+/// [`sizes`] of those that are `wanted`.
+fn headers(
+    scene_path: &Path,
+    scene: &Scene,
+    options: &Options,
+    wanted: impl Fn(&Named) -> bool,
+) -> (BTreeMap<String, (usize, usize)>, Vec<Problem>) {
     let measure = |named: &Named| {
         let file = super::paths::open(scene_path, named.path, options)?;
         picture::header(file, named.path, &options.limits)
     };
     let mut sizes = BTreeMap::new();
     let mut problems = Vec::new();
-    for named in named::pictures(scene) {
+    for named in named::pictures(scene).into_iter().filter(&wanted) {
         match measure(&named) {
             Ok(size) => drop(sizes.insert(named.key.to_owned(), size)),
             Err(error) => problems.push(problem(&named, error)),
         }
     }
-    for named in named::meshes(scene).into_iter().chain(named::fields(scene)) {
+    for named in named::meshes(scene).into_iter().chain(named::fields(scene)).filter(&wanted) {
         problems.extend(super::paths::open(scene_path, named.path, options).err().map(|error| problem(&named, error)));
     }
-    for (named, frames) in named::clips(scene_path, scene) {
+    for (named, frames) in named::clips(scene_path, scene).into_iter().filter(|(named, _)| wanted(named)) {
         let opened = frames.iter().try_for_each(|path| super::paths::open(scene_path, path, options).map(drop));
         problems.extend(opened.err().map(|error| problem(&named, error)));
     }

@@ -92,8 +92,9 @@ impl Sources<'_> {
                     Some(entry.clone())
                 }
                 Err(error) => {
-                    problems.push(problem(named, error));
-                    store.get(&file).cloned()
+                    let old = store.get(&file).cloned();
+                    problems.push(still_shown(problem(named, error), old.is_some()));
+                    old
                 }
             };
             if let Some(entry) = entry {
@@ -187,6 +188,12 @@ pub(super) fn decode_field(
 ) -> Result<(VectorField, Vec<String>, Share)> {
     let (field, share) = fields::decode(file, place, allowed.limits, allowed.budget)?;
     Ok((field, Vec::new(), share))
+}
+
+/// The problem with a file; tells where its last good version is used in its place.
+pub(super) fn still_shown(problem: Problem, old: bool) -> Problem {
+    let message = if old { problem.message + ", and what was read before is still shown" } else { problem.message };
+    Problem { message, ..problem }
 }
 
 pub(super) fn problem(named: &Named, error: impl std::borrow::Borrow<Error>) -> Problem {

@@ -1,5 +1,6 @@
 //! An open scene: document, history, journal and file change together.
 
+use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 
 use super::keeping::Keeping;
@@ -9,7 +10,12 @@ use crate::files::holder::{Holder, Sign};
 use crate::files::journal::{self, Candidate, Kind, Unopened};
 use crate::files::{Options, disk, hash, now_ms, scene, temporary, through};
 use crate::scene::history::{Applied, Stamp, Way};
-use crate::scene::{Document, Edit, History, layout};
+use crate::scene::{Document, Edit, History, json, layout};
+
+/// So many earlier texts of a file are kept,
+const MOST_KEPT: usize = 8;
+/// if they have no more than so many bytes.
+const LONGEST_KEPT: usize = 1 << 20;
 
 /// What a session may do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,6 +92,8 @@ pub struct Session {
     pub(super) file: String,
     /// The text of the file as last read or written: a save keeps its layout.
     pub(super) source: String,
+    /// Texts that the file had earlier in this session, with what they mean: a save after undo has the same bytes again.
+    pub(super) texts: VecDeque<(Document, String)>,
     pub(super) offer: Option<Offer>,
     /// The document in the file when it was last read or written; `None` if that is not known.
     pub(super) base: Option<Document>,
@@ -131,6 +139,7 @@ impl Session {
             file: hash::of(text.as_bytes()),
             offer: None,
             source: text,
+            texts: VecDeque::new(),
             base: Some(document.clone()),
             held_by,
             _sign: None,
@@ -293,14 +302,25 @@ impl Session {
             }
             return Err(error);
         }
-        (self.file, self.source, self.base) = (ours, text, Some(self.document().clone()));
+        let source = std::mem::replace(&mut self.source, text);
+        let before = self.base.replace(self.document().clone()).filter(|_| source.len() <= LONGEST_KEPT);
+        self.texts.extend(before.map(|before| (before, source)));
+        if self.texts.len() > MOST_KEPT {
+            self.texts.pop_front();
+        }
+        self.file = ours;
         self.now_saved(true);
         Ok(())
     }
 
-    /// The text that a save writes: what has not changed since the file was read keeps its layout.
+    /// The text that a save writes: what has not changed since the file was read keeps its layout, and what comes back
+    /// has the one that it had.
     pub fn text(&self) -> String {
-        layout::rewrite(&self.source, self.document().json())
+        let now = self.document().json();
+        let is_now = |document: &Document| json::same(document.json(), now);
+        let known = self.texts.iter().filter(|_| !self.base.as_ref().is_some_and(is_now));
+        let known = known.rev().find(|(document, _)| is_now(document));
+        known.map_or_else(|| layout::rewrite(&self.source, now), |(_, text)| text.clone())
     }
 
     /// How safe the current document is.

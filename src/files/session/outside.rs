@@ -123,6 +123,8 @@ impl Session {
     /// Notes what is in the file.
     fn is_file(&mut self, document: Document, file: String, text: String) {
         (self.file, self.source, self.base) = (file, text, Some(document));
+        // The layout is the other program's from now on.
+        self.texts.clear();
     }
 
     /// Refuses to replace a file that is write-protected.

@@ -26,15 +26,14 @@ fn set(state: &mut State, call: &Call) -> Done {
         return Err("set takes PATH=VALUE".into());
     }
     let scene = state.scene.path().to_owned();
-    let set::Set { edit, lost, places } =
-        set::edit(state.document(), &settings, &scene).map_err(|error| match error {
-            // The name of the open scene would add nothing.
-            Error::Scene { problems, .. } => first(&problems),
-            other => other.to_string(),
-        })?;
-    let overruled = edit.overruled(state.document());
-    let lost: Vec<String> = lost.into_iter().chain(overruled).collect();
-    state.edit(edit, false)?;
+    let set = set::edit(state.document(), &settings, &scene).map_err(|error| match error {
+        // The name of the open scene would add nothing.
+        Error::Scene { problems, .. } => first(&problems),
+        other => other.to_string(),
+    })?;
+    let remarks = set.remarks(state.document(), &scene, state.scene.options());
+    let places = set.places;
+    state.edit(set.edit, false)?;
     let paths: Vec<String> = settings
         .iter()
         .filter_map(|one| set::parse(one).ok())
@@ -44,10 +43,10 @@ fn set(state: &mut State, call: &Call) -> Done {
             Err(_) => path.to_owned(),
         })
         .collect();
-    state.say(match lost.as_slice() {
+    state.say(match remarks.as_slice() {
         [] if places > paths.len() => format!("{places} places are set: {}", paths.join(", ")),
         [] => format!("{} {} set", paths.join(", "), if paths.len() == 1 { "is" } else { "are" }),
-        lost => lost.join("; "),
+        remarks => plain(&remarks.join("; ")),
     });
     Ok(())
 }

@@ -133,6 +133,12 @@ fn meshes_are_loaded_with_what_they_name() {
     let (third, _) = gather(&path, &scene, &options, &mut cache);
     assert!(Arc::ptr_eq(&first.meshes["a"], &third.meshes["a"]));
     assert_eq!(third.meshes["b"].bounds().unwrap().1.x, 2.0, "what it names has changed");
+    write("a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
+    let (fourth, problems) = gather(&path, &scene, &options, &mut cache);
+    assert!(Arc::ptr_eq(&third.meshes["a"], &fourth.meshes["a"]));
+    let told = problems.iter().find(|problem| problem.path == "/meshes/a/path").unwrap();
+    let expected = "a.obj: line 4: there is no vertex 9: there are 3, and what was read before is still shown";
+    assert_eq!(told.message, expected);
     let copy = |name: &str| (name.to_owned(), Ok(folder.path().join(name)));
     let copies = Copies::from(["sub/b.gltf", "sub/b.bin"].map(copy));
     let (copied, _) = gather_copies(&copies, &scene, &options, &mut Cache::default());

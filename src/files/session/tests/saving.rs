@@ -29,6 +29,13 @@ fn every_save_changes_only_what_was_edited() {
     session.undo().unwrap();
     session.save(Overwrite::No).unwrap();
     assert_eq!(text(&place.scene), written);
+    // What was removed has its bytes again too.
+    session.apply(Edit::remove("/timeline"), false).unwrap();
+    session.save(Overwrite::No).unwrap();
+    assert!(!text(&place.scene).contains("timeline"));
+    session.undo().unwrap();
+    session.save(Overwrite::No).unwrap();
+    assert_eq!(text(&place.scene), written);
     // Another program changes the layout: that is the layout from now on.
     let other = "{\"plica\":1,\"title\":\"start\",\"timeline\":{\"duration\":2.50,\"fps\":1e1}}";
     std::fs::write(&place.scene, other).unwrap();
