@@ -103,6 +103,8 @@ pub enum Put {
     Extreme,
     /// A place from which the picture is not seen.
     Blend,
+    /// Nothing: the place is only told, as that of a point.
+    Nothing,
 }
 
 /// What is seen of a layer's model from a place.

@@ -44,7 +44,10 @@ pub fn title(state: &State) -> String {
             (Some(Painting { sees: Sees::Painting, share, .. }), Some((.., name))) => {
                 format!("painting {}, {:.0} % of it", plain(&name), share * 100.0)
             }
-            (Some(Painting { sees: Sees::Select, .. }), _) => "select".into(),
+            (Some(Painting { sees: Sees::Select, .. }), _) => match painting::degrees(state) {
+                Some([right, up]) => format!("select  {}° right {}° up", short(right), short(up)),
+                None => "select".into(),
+            },
             (Some(_), _) => format!("results{pass}"),
             (None, _) => format!("picture{pass}"),
         },

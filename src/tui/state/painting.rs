@@ -101,6 +101,12 @@ pub fn put(state: &State, put: Put) -> Result<(String, Value), String> {
     Ok((format!("/layers/{layer}{path}"), value))
 }
 
+/// In select, how far the cursor is from the camera of the view that is selected, on its sphere: to the right and up, in degrees.
+pub fn degrees(state: &State) -> Option<[f64; 2]> {
+    let (_, value) = put(state, Put::Nothing).ok()?;
+    serde_json::from_value(value).ok()
+}
+
 /// The width and height of what the pane shows, if it is known and no clip.
 pub fn size(state: &State) -> Option<(usize, usize)> {
     let synth = state.picture.synth.as_ref()?;

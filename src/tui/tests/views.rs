@@ -169,6 +169,8 @@ pub fn one_paints_in_three_views() {
     assert!(run(&mut state, "probe").0.contains(":layout results"));
     press(&mut state, "Tab");
     assert_eq!((title(&state).as_str(), state.picture.size), ("select", Some((24, 16))));
+    let whole = panes::picture::title(&state);
+    assert!(whole.contains("° right ") && whole.contains("° up  x "), "where the cursor is on the sphere: {whole}");
     let select = made(&state);
     let names: Vec<&str> = select
         .over

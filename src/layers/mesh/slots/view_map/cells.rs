@@ -107,6 +107,9 @@ impl Layer {
     }
 }
 
+/// The most cells of the finest layer.
+pub const MOST_CELLS: f64 = 16_777_216.0;
+
 impl Cells {
     /// The cells of so many layers, of which the first has so many side by side in a unit of the atlas.
     pub fn new(atlas: &Atlas, first: u32, levels: usize) -> Cells {
@@ -123,6 +126,11 @@ impl Cells {
     /// How many cells there are on all layers.
     pub fn count(&self) -> usize {
         self.layers.iter().map(Layer::len).sum()
+    }
+
+    /// So many layers, or as many of them as have no more than [`MOST_CELLS`] on the finest.
+    pub fn fitting(atlas: &Atlas, first: u32, levels: usize) -> usize {
+        (1..=levels).rev().find(|levels| Cells::most(atlas, first, *levels) <= MOST_CELLS).unwrap_or(levels.min(1))
     }
 
     /// How many squares a finest layer may have at most, before it is made.

@@ -104,7 +104,7 @@ impl Map {
         let atlas = before.map_or_else(|| Arc::new(Atlas::new(&wanted.mesh, wanted.by)), |map| map.atlas.clone());
         let before = before.filter(|map| map.wanted.first == wanted.first);
         let (mut seen, depths) = looked(&wanted, &atlas, before, watch)?;
-        let levels = wanted.levels.unwrap_or_else(|| automatic(&depths));
+        let levels = wanted.levels.unwrap_or_else(|| Cells::fitting(&atlas, wanted.first, automatic(&depths)));
         let before = before.filter(|map| map.cells.layers.len() == levels);
         let cells = before.map_or_else(|| Arc::new(Cells::new(&atlas, wanted.first, levels)), |map| map.cells.clone());
         let alike = before.filter(|map| map.wanted.tells_the_same(&wanted));

@@ -30,7 +30,7 @@ pub fn put(map: &Map, number: usize, put: Put, ray: &Ray, placed: &Placed) -> Re
             let written = |at: DVec3| at.to_array().map(|part| rounded(part, PARTS.1));
             Ok(("/blend/points".into(), json!({ "position": written(place), "target": written(view.target) })))
         }
-        (Put::Extreme, Extremes::Points(_)) => {
+        (Put::Nothing, _) | (Put::Extreme, Extremes::Points(_)) => {
             let [right, up] = degrees(view, place).map(|angle| rounded(angle.clamp(-MOST, MOST), PARTS.0));
             Ok((format!("/views/{number}/extremes/points"), json!([right, up])))
         }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::arrays::{Arrays, ELEMENT_BYTES};
 use super::blend::Points;
-use super::cells::{Cells, Layer};
+use super::cells::{Cells, Layer, MOST_CELLS};
 use super::map::{Map, UNSEEN, Wanted, Watch};
 use super::model::{Atlas, ViewMap};
 use super::ready::Ready;
@@ -24,8 +24,6 @@ use crate::layers::ready::Making;
 
 /// The memory of a pixel of a picture while a view looks, in bytes: four pixels of the image of triangles.
 const LOOKED_BYTES: u64 = 4 * 24;
-/// The most cells of the finest layer.
-const MOST_CELLS: f64 = 16_777_216.0;
 
 /// What is known of them without a layer.
 pub const ADDED: Added = Added {

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use super::atlas::{self, Atlas};
-use super::cells::Layer;
+use super::cells::{Cells, Layer};
 use super::map::Map;
 use super::model::{Extremes, Feeds, View, ViewMap};
 use super::report::{self, OfView};
@@ -90,9 +90,14 @@ fn of_view(found: &OfView, map: &Map) -> Option<Problem> {
     let finest = map.cells.layers.len().saturating_sub(1);
     (found.beyond > MOST_BEYOND).then(|| {
         let holds = ((depth + 1.0).ceil() + 1.0).max(finest as f64 + 2.0).min(MOST_LEVELS);
-        let message =
-            format!("{:.0} % of it is finer than layer {finest}; levels {holds} would hold it", 100.0 * found.beyond);
-        Problem::warning("", message).hint(format!("set levels to {holds}"))
+        let finer = format!("{:.0} % of it is finer than layer {finest}", 100.0 * found.beyond);
+        match Cells::fitting(&map.atlas, map.wanted.first, holds as usize) {
+            most if most > finest + 1 => {
+                let message = format!("{finer}; levels {most} would hold it");
+                Problem::warning("", message).hint(format!("set levels to {most}"))
+            }
+            _ => Problem::warning("", format!("{finer}, and no more fit")).hint("a smaller picture looks the same"),
+        }
     })
 }
 
