@@ -3,7 +3,7 @@
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use super::{disk, paths, picture};
+use super::{Limits, disk, paths, picture};
 use crate::base::error::{Error, Result};
 use crate::base::numbered::{Pattern, Series, series};
 use crate::layers::parts::materials::List;
@@ -19,6 +19,16 @@ pub struct ClipFiles {
     pub first: u64,
     /// Their names, in order.
     pub files: Vec<String>,
+}
+
+impl ClipFiles {
+    /// Whether nothing moves in it, as far as its first, its middle and its last file tell.
+    pub fn is_still(&self, limits: &Limits) -> bool {
+        let read = |name: &String| paths::read(&self.folder.join(name), limits.memory).ok();
+        let [first, .., last] = self.files.as_slice() else { return false };
+        let first = read(first);
+        first.is_some() && [&self.files[self.files.len() / 2], last].into_iter().all(|name| read(name) == first)
+    }
 }
 
 /// Whether a file of this name is a video, or a pattern of numbered files.
@@ -145,6 +155,20 @@ mod tests {
             image::RgbaImage::new(2, 2).save(path).unwrap();
         }
         folder
+    }
+
+    #[test]
+    fn a_clip_of_the_same_picture_over_and_over_is_still() {
+        let folder = tempfile::tempdir().unwrap();
+        let write =
+            |number: usize, text: &str| std::fs::write(folder.path().join(format!("{number}.png")), text).unwrap();
+        (0..4).for_each(|number| write(number, "same"));
+        let is_still = || find(&folder.path().join("%d.png")).unwrap().is_still(&Limits::default());
+        assert!(is_still());
+        write(3, "other");
+        assert!(!is_still());
+        (1..4).for_each(|number| std::fs::remove_file(folder.path().join(format!("{number}.png"))).unwrap());
+        assert!(!is_still(), "a single picture");
     }
 
     #[test]

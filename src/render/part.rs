@@ -6,6 +6,7 @@ use kurbo::{Point, Vec2};
 use super::passes::{self, Asked};
 use super::{Synth, cpu};
 use crate::base::pixels::{Frame, Linear, Rgba, encode};
+use crate::layers::parts::pass::Holds;
 
 /// Which part of a picture is shown, on how many dots.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,10 +46,15 @@ impl Part {
         Part { scale: self.scale * by as f64, dots: (w.div_ceil(by), h.div_ceil(by)), ..*self }
     }
 
+    /// How many pixels a dot has in each direction, as far as that can be afforded.
+    fn every_pixel(&self) -> usize {
+        let afford = (MOST_PIXELS as f64 / (self.dots.0 * self.dots.1).max(1) as f64).sqrt() as usize;
+        (self.scale.ceil() as usize).clamp(1, afford.max(1))
+    }
+
     /// How many pixels a dot is the mean of, in each direction.
     fn each_way(&self) -> usize {
-        let afford = (MOST_PIXELS as f64 / (self.dots.0 * self.dots.1).max(1) as f64).sqrt() as usize;
-        (self.scale.ceil() as usize).clamp(1, afford.clamp(1, MOST_EACH_WAY))
+        self.every_pixel().min(MOST_EACH_WAY)
     }
 }
 
@@ -66,19 +72,32 @@ pub fn frame(synth: &Synth, scene_time: f64, part: &Part) -> Frame {
 }
 
 /// As [`frame`], of a pass, to look at, over the dimmed frame where that helps: each dot is the pixel in its middle, since
-/// numbers of triangles have no mean.
+/// numbers of triangles have no mean; of thin lines any pixel of the dot that is on one.
 pub fn pass(synth: &Synth, scene_time: f64, part: &Part, asked: &Asked) -> Frame {
     let asked = asked.looked_at();
-    let columns = Line::new(part.corner.x, part.scale, part.dots.0, 1, synth.size.0);
-    let rows = Line::new(part.corner.y, part.scale, part.dots.1, 1, synth.size.1);
-    let seen = |asked: &Asked| asked.lattice(synth, scene_time, &columns.pixels, &rows.pixels);
-    let pixels = passes::view_over(&asked, &seen(&asked), || seen(&asked.in_color()));
-    let at = |x: usize, y: usize| match (columns.of(x), rows.of(y)) {
-        ([Some(x)], [Some(y)]) => *pixels.get(*x, *y),
-        _ => [0; 4],
+    let each = if asked.pass.holds == Holds::Speed { part.every_pixel() } else { 1 };
+    let lines = |each: usize| {
+        let columns = Line::new(part.corner.x, part.scale, part.dots.0, each, synth.size.0);
+        (columns, Line::new(part.corner.y, part.scale, part.dots.1, each, synth.size.1))
     };
-    let dots = (0..part.dots.1).flat_map(|y| (0..part.dots.0).map(move |x| (x, y)));
-    Frame::from_cells(part.dots.0, part.dots.1, dots.map(|(x, y)| at(x, y)).collect())
+    let dots = || (0..part.dots.1).flat_map(|y| (0..part.dots.0).map(move |x| (x, y)));
+    let sampled = |asked: &Asked, each: usize| {
+        let (columns, rows) = lines(each);
+        let pixels = asked.lattice(synth, scene_time, &columns.pixels, &rows.pixels);
+        let cells = dots().map(|(x, y)| any(&pixels, columns.of(x), rows.of(y))).collect();
+        Linear::from_cells(part.dots.0, part.dots.1, cells)
+    };
+    let seen = passes::view_over(&asked, &sampled(&asked, each), || sampled(&asked.in_color(), 1));
+    let (columns, rows) = lines(1);
+    let within = |x: usize, y: usize| columns.of(x)[0].is_some() && rows.of(y)[0].is_some();
+    let cells = dots().map(|(x, y)| if within(x, y) { *seen.get(x, y) } else { [0; 4] }).collect();
+    Frame::from_cells(part.dots.0, part.dots.1, cells)
+}
+
+/// The first of these pixels in which there is something.
+fn any(pixels: &Linear, columns: &[Option<usize>], rows: &[Option<usize>]) -> Rgba {
+    let all = rows.iter().flatten().flat_map(|&y| columns.iter().flatten().map(move |&x| *pixels.get(x, y)));
+    all.into_iter().find(|cell| cell[3] != 0.0).unwrap_or_default()
 }
 
 fn mean(pixels: &Linear, columns: &[Option<usize>], rows: &[Option<usize>]) -> [u8; 4] {
@@ -143,6 +162,18 @@ mod tests {
         )
         .unwrap();
         synth(&scene, &materials, None).unwrap()
+    }
+
+    #[test]
+    fn a_thin_line_has_no_gaps_on_few_dots() {
+        let cell = |i: usize| if (i % 60) / 2 == i / 60 { [1.0; 4] } else { [0.0; 4] };
+        let picture = Linear::from_cells(60, 30, (0..60 * 30).map(cell).collect());
+        let part = Part { corner: Point::ZERO, scale: 7.5, dots: (8, 4) };
+        let whole = |dots: usize, size: usize| Line::new(0.0, part.scale, dots, part.every_pixel(), size);
+        let (columns, rows) = (whole(8, 60), whole(4, 30));
+        assert_eq!((columns.pixels.len(), rows.pixels.len()), (60, 30), "no pixel is left out");
+        let crossed = |x: usize| (0..4).any(|y| any(&picture, columns.of(x), rows.of(y)) != [0.0; 4]);
+        assert!((0..8).all(crossed));
     }
 
     #[test]

@@ -150,7 +150,7 @@ fn is_shown(pass: &Pass, layer: Option<usize>, scene: &Scene) -> bool {
     let mut layers = scene.layers.iter().enumerate().filter(|(i, _)| layer.is_none_or(|only| only == *i));
     let common = PASSES.contains(&pass);
     let has = |layer: &dyn Technique| match common {
-        true => layer.kind().space == Space::World,
+        true => layer.kind().space == Space::World && layer.has_pass(pass),
         false => layer.kind().passes.iter().any(|passes| passes.contains(pass)) && layer.has_pass(pass),
     };
     *pass == COLOR || layers.any(|(i, layer)| has(layer.technique()) && !textures.contains(&i))

@@ -55,7 +55,7 @@ impl Offered {
         let (index, layer) = layer_of(document, name, own, self.kind.name)?;
         let edit = Edit::merge(document, &format!("/layers/{index}"), &self.patch()?);
         let done = if edit.is_empty() { "changes nothing in" } else { "is applied to" };
-        let wants = if wants.is_empty() { String::new() } else { format!("; it wants {wants}") };
+        let wants = if wants.is_empty() || edit.is_empty() { String::new() } else { format!("; it wants {wants}") };
         Ok(Applied { told: format!("{own} {done} {}{wants}", layer.name()), edit })
     }
 

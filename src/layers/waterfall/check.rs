@@ -66,7 +66,7 @@ fn of_sprites(layer: &WaterfallLayer) -> Vec<Problem> {
     }
     let bytes = bytes_of(sprites);
     if bytes > MOST_BYTES {
-        let message = format!("keys of {} (limit {}): lower size, keys or growth.max", size(bytes), size(MOST_BYTES));
+        let message = format!("keys of {} (limit {})", size(bytes), size(MOST_BYTES));
         problems.push(Problem::error("/sprites", message).hint(enough(sprites)));
     }
     problems
@@ -78,14 +78,21 @@ fn enough(sprites: &Sprites) -> String {
     let sized = |side: u32| Sprites { size: side, ..sprites.clone() };
     let keyed = |keys: u32| Sprites { keys, ..sprites.clone() };
     let grown = |max: u32| Sprites { growth: Growth { max, ..sprites.growth.clone() }, ..sprites.clone() };
+    let picked = |count: usize| Sprites { picks: sprites.picks[..count].to_vec(), ..sprites.clone() };
+    let counts: Vec<usize> = (1..=sprites.picks.len()).collect();
+    let picks = counts.partition_point(|count| fits(&picked(*count)));
     let sides = (SIDE_STEP..sprites.size).step_by(SIDE_STEP as usize).rev();
     let all = [
         ("size", sides.clone().find(|side| fits(&sized(*side)))),
         ("keys", (1..sprites.keys).rev().find(|keys| fits(&keyed(*keys)))),
         ("growth.max", (1..sprites.growth.max).rev().find(|max| fits(&grown(*max)))),
+        ("picks, as many as", Some(picks as u32).filter(|_| (1..sprites.picks.len()).contains(&picks))),
     ];
     let told = all.into_iter().filter_map(|(name, most)| Some(format!("{name} {}", most?))).collect::<Vec<_>>();
-    if told.is_empty() { "use fewer sheets and picks".to_owned() } else { format!("{} is enough", told.join(" or ")) }
+    match told.is_empty() {
+        true => "use fewer sheets and picks".to_owned(),
+        false => format!("lower one of them: {} is enough", told.join(" or ")),
+    }
 }
 
 fn of_look(look: &Look, path: &str) -> Vec<Problem> {
@@ -121,9 +128,9 @@ fn of_lines(layer: &WaterfallLayer) -> Vec<Problem> {
 fn too_many(count: f64) -> Option<Problem> {
     let message = || {
         let (count, most) = (count / 1e6, MOST_SPRITES / 1e6);
-        format!("{count:.1} million sprites at once (limit {most} million): lower lines, rate or life")
+        format!("{count:.1} million sprites at once (limit {most} million)")
     };
-    (count > MOST_SPRITES).then(|| Problem::error("/lines", message()))
+    (count > MOST_SPRITES).then(|| Problem::error("/lines", message()).hint("lower lines, rate or life"))
 }
 
 /// How much lines carry at once, in the mean.
@@ -173,7 +180,7 @@ pub fn with_sources(layer: &WaterfallLayer, sources: &Sources) -> Vec<Problem> {
             "{keys} keys {step} frames apart need {needed} frames; the clip \"{name}\" has {}",
             clip.frames.len()
         );
-        problems.push(Problem::error("/sprites", message).hint("lower keys or step"));
+        problems.push(Problem::error("/sprites", message).hint("lower keys or step, or make the clip longer"));
     }
     let picks = sprites.picks.iter().enumerate();
     problems.extend(picks.flat_map(|(i, pick)| {

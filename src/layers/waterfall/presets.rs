@@ -17,7 +17,11 @@ macro_rules! preset {
 pub const PRESETS: &[Preset] = &[
     preset!("curtain", "a thin, even sheet of water, as over a weir", ""),
     preset!("fountain", "a jet of water that rises from one place and falls around it", ""),
-    preset!("smoke", "smoke that rises from one place and spreads", ""),
+    preset!(
+        "smoke",
+        "smoke that rises from one place and spreads",
+        "a camera that sees it rise (in the editor :camera fit)"
+    ),
     preset!("fire", "flames from a burning log or bowl", "a clip that was taken against black"),
     preset!("cloud", "a cloud that drifts slowly and never ends", "a timeline of 12 s (timeline.duration=12)"),
 ];

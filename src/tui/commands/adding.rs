@@ -109,7 +109,8 @@ fn clip(state: &State, (place, path): (&Path, &str)) -> Result<Brought, String> 
     let first = found.files.first().map(|file| found.folder.join(file));
     // A video tells nothing before it is decoded.
     let size = first.as_ref().and_then(|first| picture::size(first, &state.scene.options().limits).ok());
-    let known = size.map(|size_px| Known { size_px, frames: found.files.len(), is_still: false });
+    let is_still = found.is_still(&state.scene.options().limits);
+    let known = size.map(|size_px| Known { size_px, frames: found.files.len(), is_still });
     let name = clips::called(&found.name, last);
     let start = Start::within(state.document()).clip(name, &path, found.first, known);
     Ok(Brought { start, is_there: first.is_some_and(|first| first.exists()), path, notes: Vec::new(), copies })

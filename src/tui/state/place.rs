@@ -147,12 +147,19 @@ fn lists(document: &Document, pointer: &str) -> Vec<String> {
 }
 
 fn add_to(state: &State, list: &str, index: usize) -> Option<(Edit, String)> {
-    let (edit, pointer) = Edit::insert_new(state.document(), list, index)?;
-    let with = state.document().apply(&edit).ok()?;
-    let moved = match place(&with, &pointer) {
-        Some((place, _)) => move_to(&with, &place, state.picture.cursor),
-        None => spatial::moved(state, &with, &pointer)?,
+    let insert = |index: usize| {
+        let (edit, pointer) = Edit::insert_new(state.document(), list, index)?;
+        let with = state.document().apply(&edit).ok()?;
+        Some((edit, pointer, with))
     };
+    let (edit, pointer, with) = insert(index)?;
+    if let Some((place, _)) = place(&with, &pointer) {
+        return Some((Edit::all([edit, move_to(&with, &place, state.picture.cursor)]), pointer));
+    }
+    // A line in space goes on, or bends, where that makes it longer by the least.
+    let (_, to) = spatial::under(state, &with, &pointer)?;
+    let (edit, pointer, with) = insert(spatial::least_detour(state, list, to))?;
+    let moved = spatial::moved(state, &with, &pointer)?;
     Some((Edit::all([edit, moved]), pointer))
 }
 

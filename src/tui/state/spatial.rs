@@ -72,12 +72,32 @@ pub fn seen(state: &State, at: DVec3) -> Option<Point> {
 /// The edit that moves what is at `pointer` in `document` under the cursor: as far away as what is selected is, else as it is
 /// itself. `None` if it has no place in space, or is behind the camera.
 pub fn moved(state: &State, document: &Document, pointer: &str) -> Option<Edit> {
+    let (field, to) = under(state, document, pointer)?;
+    let to = to_world(state, document, pointer).inverse().transform_point3(to);
+    Some(Edit::set(document, &field, numbers::rounded(Value::from(to.to_array().to_vec()))))
+}
+
+/// The place under the cursor to which [`moved`] brings what is at `pointer`, and the field that has it.
+pub fn under(state: &State, document: &Document, pointer: &str) -> Option<Place> {
     let (field, own) = place(state, document, pointer)?;
     let beside = selected(state).map_or(own, |(_, (_, at))| at);
     let depth = Some(-eye(state).ok()?.seen(beside).z).filter(|depth| *depth >= NEAR_M)?;
-    let to = ray(state).ok()?.at_depth(depth);
-    let to = to_world(state, document, pointer).inverse().transform_point3(to);
-    Some(Edit::set(document, &field, numbers::rounded(Value::from(to.to_array().to_vec()))))
+    Some((field, ray(state).ok()?.at_depth(depth)))
+}
+
+/// Where in a list of places a line through all of them gets longer by the least with one more.
+pub fn least_detour(state: &State, list: &str, to: DVec3) -> usize {
+    let document = state.document();
+    let count = document.json().pointer(list).and_then(Value::as_array).map_or(0, Vec::len);
+    let places: Vec<DVec3> =
+        (0..count).filter_map(|i| Some(place(state, document, &format!("{list}/{i}"))?.1)).collect();
+    let longer = |&index: &usize| {
+        let before = index.checked_sub(1).and_then(|i| places.get(i));
+        let far = |at: Option<&DVec3>| at.map_or(0.0, |at| at.distance(to));
+        far(before) + far(places.get(index)) - before.zip(places.get(index)).map_or(0.0, |(a, b)| a.distance(*b))
+    };
+    let all = 0..=places.len();
+    all.rev().min_by(|a, b| longer(a).total_cmp(&longer(b))).unwrap_or(0)
 }
 
 /// The field of what is at `pointer`, and the value with which it goes to where a ray points.

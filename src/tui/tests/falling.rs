@@ -355,13 +355,27 @@ fn nodes_are_added_and_moved_as_far_away_as_the_selected_one() {
     for (key, node) in [("a", 2), ("r", 1)] {
         let mut state = falling(json!({}));
         let depth = -eye(&camera).seen(place(&state, 1)).z;
-        press(&mut state, &format!("j g i : \"cursor at 120 80\" Enter {key}"));
+        press(&mut state, &format!("j g i : \"cursor at 215 80\" Enter {key}"));
         assert_eq!(state.cursor.row, node, "{key}: {:?}", state.message);
         let found = place(&state, node);
-        assert!(seen(&camera, found).distance(Point::new(120.0, 80.0)) < 1e-2, "{key}: {found}");
+        assert!(seen(&camera, found).distance(Point::new(215.0, 80.0)) < 1e-2, "{key}: {found}");
         assert!((-eye(&camera).seen(found).z - depth).abs() < 1e-5, "{key}: {found}");
         assert_eq!(velocity(&state, node), [0.5, 0.0, 1.0], "{key}: a new one is like the one before");
         replays(&state);
+    }
+}
+
+#[test]
+fn a_new_node_never_folds_the_lip_back() {
+    for (x, row) in [(-2.0, 0), (-0.4, 1), (0.7, 2), (1.6, 3)] {
+        for selected in ["", "j", "2 j"] {
+            let mut state = falling(json!({}));
+            let Point { x, y } = seen(&camera(), DVec3::new(x, 4.8, 0.0));
+            press(&mut state, &format!("{selected} g i : \"cursor at {x} {y}\" Enter a"));
+            assert_eq!(state.cursor.row, row, "{x} {selected}: {:?}", state.message);
+            let places: Vec<f64> = (0..4).map(|node| place(&state, node).x).collect();
+            assert!(places.is_sorted(), "{x} {selected}: {places:?}");
+        }
     }
 }
 

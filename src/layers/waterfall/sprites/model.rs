@@ -53,7 +53,7 @@ pub struct Growth {
 #[serde(deny_unknown_fields)]
 pub struct Pick {
     /// The frame of its first key; 0 is the clip's first. With track, (keys - 1) x step more frames follow it in the clip.
-    #[schemars(extend("unit" = "frames"))]
+    #[schemars(range(min = 0, max = 999_999), extend("unit" = "frames"))]
     pub frame: u32,
     /// Its middle.
     #[schemars(extend("unit" = "px"))]
