@@ -21,6 +21,7 @@ use super::parts::plan::Plan;
 use super::parts::readout::{Fact, Under, VectorField};
 use super::parts::shots::{Painted, Put, Taken};
 use super::space::eye::Ray;
+use super::space::fit;
 use super::timeline::{Timeline, Wrap};
 use crate::base::pixels::{Linear, Rgba};
 use crate::base::problem::Problem;
@@ -170,6 +171,11 @@ pub trait Ready: Any + Debug + Send + Sync {
     /// How far it reaches along each of these ways of the world at scene time `t`; `None` for layers in the frame.
     fn reach(&self, _t: f64, _ways: &[DVec3]) -> Option<Vec<f64>> {
         None
+    }
+
+    /// Whether something of it may be in the frame at one time; what stands before it does not count.
+    fn is_in_frame(&self, moment: &Moment) -> bool {
+        moment.eye.is_none_or(|eye| fit::may_see(&|ways| self.reach(moment.t, ways), &eye))
     }
 
     /// What is good to know of it as a whole, for a single line.

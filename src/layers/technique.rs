@@ -190,6 +190,11 @@ pub trait Technique: Any + Send + Sync {
         Err("this cannot be moved".into())
     }
 
+    /// How the item at `path` would be drawn if it went to where a ray of the world points; nothing if it cannot.
+    fn aimed_marks(&self, _path: &str, _ray: &Ray, _moment: &Moment) -> Vec<Mark> {
+        Vec::new()
+    }
+
     /// Where the item at `path` goes now.
     ///
     /// # Errors
@@ -203,7 +208,7 @@ pub trait Technique: Any + Send + Sync {
         Vec::new()
     }
 
-    /// Whether the layer shows something in a pass that its technique adds.
+    /// Whether the layer shows something in a pass: one that all layers in space share, or one that its technique adds.
     fn has_pass(&self, _pass: &Pass) -> bool {
         true
     }

@@ -34,6 +34,13 @@ impl Synth {
         self.stage.moment(t, self.size)
     }
 
+    /// Whether anything of it may be in its frame at one scene time.
+    pub fn shows_something(&self, t: f64) -> bool {
+        let moment = self.moment(t);
+        let drawn = self.stage.groups.iter().flat_map(|group| group.layers());
+        drawn.filter_map(|&layer| self.layers.get(layer)).any(|layer| layer.is_in_frame(&moment))
+    }
+
     /// What its layers do not show, as there was too little memory for it (`Materials::leaves_out`).
     pub fn lacks(&self) -> Vec<Problem> {
         let layers = self.layers.iter().enumerate();
@@ -141,4 +148,25 @@ pub struct Whole {
     pub(super) layer: Vec<u32>,
     /// Which part of it.
     pub(super) part: Vec<u32>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::samples;
+    use super::*;
+
+    #[test]
+    fn whether_anything_is_in_the_frame_is_known_without_drawing() {
+        let (_, synth) = samples::two_squares();
+        for (position, target, shows) in [
+            ([0.0, 0.0, 4.0], [0.0, 0.0, 0.0], true),
+            ([0.0, 0.0, 4.0], [0.0, 0.0, 9.0], false),
+            ([0.0, 0.0, 4.0], [40.0, 0.0, 0.0], false),
+            ([0.0, 0.0, -4.0], [0.0, 0.0, 0.0], false),
+            ([0.0, 0.0, -0.5], [0.0, 0.0, -4.0], true),
+        ] {
+            let seen = synth.seen_from(Camera { position, target, ..Camera::default() });
+            assert_eq!(seen.shows_something(0.0), shows, "{position:?} {target:?}");
+        }
+    }
 }

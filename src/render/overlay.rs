@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use glam::DVec2;
 use kurbo::Point;
 
 use super::Synth;
@@ -69,6 +70,15 @@ pub fn overlay(scene: &Scene, synth: Option<&Synth>, view: &View) -> Vec<Mark> {
     let mut marks: Vec<Mark> = all.map(|(path, mark)| collected(path, mark, &view)).collect();
     marks.sort_by_key(|mark| mark.look.order);
     marks
+}
+
+/// The marks of what is at a JSON pointer if it went to where a place of the picture points, at scene time `t`.
+pub fn aimed(scene: &Scene, synth: &Synth, t: f64, (pointer, at): (&str, Point)) -> Vec<Mark> {
+    let moment = synth.moment(t);
+    let Some((layer, way)) = Pointer(pointer).item_of("/layers") else { return Vec::new() };
+    let Some((eye, layer)) = moment.eye.zip(scene.layers.get(layer)) else { return Vec::new() };
+    let marks = layer.technique().aimed_marks(way, &eye.ray_in_world(DVec2::new(at.x, at.y)), &moment);
+    marks.into_iter().map(|mark| Mark { selected: true, ..mark }).collect()
 }
 
 /// For each layer in space what is nearest in its group, if marks are shown that surfaces hide.

@@ -1,5 +1,5 @@
 //! What explains a mesh: its edges, its normals, and where its back is seen. As many strokes as a screen can bear; of a
-//! larger mesh every n-th thing is drawn, and a label says so.
+//! larger mesh every n-th thing is drawn, and of what would run together the outline; a label says so.
 
 use glam::DVec3;
 use kurbo::Point;
@@ -44,6 +44,8 @@ pub static LOOKS: &[&Look] = &[&GRID, &AXES[0], &AXES[1], &AXES[2], &FRUSTUM, &W
 
 /// At most so many strokes, or cells, of one overlay of one layer.
 const MOST: usize = 60_000;
+/// Of at most so many sides of triangles it is found out which make an edge.
+const MOST_SORTED: usize = 600_000;
 /// The length of a normal, as a share of the size of the mesh.
 const LENGTH: f64 = 0.015;
 
@@ -64,7 +66,7 @@ pub fn marks(synth: &Synth, view: &View, moment: &Moment) -> Vec<Mark> {
     let [wires, normals, backs] = shown;
     // Who looks at back sides looks into the mesh.
     let nearest = view.nearest.as_deref().filter(|_| !backs);
-    marks.extend(wires.then(|| seen.wires(MOST, nearest)).into_iter().flatten());
+    marks.extend(wires.then(|| seen.wires(MOST, view.least_px, nearest)).into_iter().flatten());
     marks.extend(normals.then(|| seen.normals(MOST)).into_iter().flatten());
     marks.extend(backs.then(|| seen.backs(view.cell_px)).into_iter().flatten());
     marks
@@ -101,25 +103,39 @@ impl Seen<'_> {
         Raster::new(&self.eye, self.moment.size_px, CENTER, &self.synth.mesh.triangles, seen, both)
     }
 
-    /// The edges of what is seen, each once; without the parts that something nearer hides.
-    fn wires(&self, most: usize, nearest: Option<&Depths>) -> Vec<Mark> {
-        let triangles = &self.synth.mesh.triangles;
-        let step = (3 * triangles.len()).div_ceil(most).max(1);
-        let shown = triangles.iter().step_by(step).filter(|triangle| self.both() || self.is_front(triangle));
-        let mut edges: Vec<(u32, u32)> = shown
-            .flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)])
-            .map(|(from, to)| (from.min(to), from.max(to)))
-            .collect();
+    /// The edges of what is seen, each once; without the parts that something nearer hides. Of those that are shorter than
+    /// `least_px` only the outline is left.
+    fn wires(&self, most: usize, least_px: f64, nearest: Option<&Depths>) -> Vec<Mark> {
+        let triangles = self.synth.mesh.triangles.par_iter().map(|triangle| (triangle, self.is_front(triangle)));
+        let triangles: Vec<_> = triangles.filter(|(_, front)| self.both() || *front).collect();
+        let step = (3 * triangles.len()).div_ceil(MOST_SORTED.max(most)).max(1);
+        let sides = |(&[a, b, c], front): (&[u32; 3], bool)| {
+            [(a, b), (b, c), (c, a)].map(|(from, to)| (from.min(to), from.max(to), front))
+        };
+        let mut edges: Vec<(u32, u32, bool)> = triangles.into_iter().step_by(step).flat_map(sides).collect();
         edges.sort_unstable();
-        edges.dedup();
-        let ends = |(from, to): (u32, u32)| [from, to].map(|i| self.world[i as usize].0);
-        let parts = edges.into_iter().filter_map(|edge| deep_line(self.moment, &self.eye, ends(edge)));
-        let parts = parts.flat_map(|line| match nearest {
+        let mut short = false;
+        let lines = edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).filter_map(|same| {
+            let ends = [same[0].0, same[0].1].map(|i| self.world[i as usize].0);
+            let line = deep_line(self.moment, &self.eye, ends)?;
+            let inner = same.len() > 1 && same.iter().all(|(.., front)| *front == same[0].2);
+            let left_out = inner && (line[1].0 - line[0].0).hypot() < least_px;
+            short |= left_out;
+            (!left_out).then_some(line)
+        });
+        let lines: Vec<_> = lines.collect();
+        let each = lines.len().div_ceil(most).max(1);
+        let parts = lines.into_iter().step_by(each).flat_map(|line| match nearest {
             Some(nearest) => nearest.shown(line),
             None => vec![line.map(|(at, _)| at)],
         });
         let wire = |points: [Point; 2]| Mark::new(&WIRE, "", Shape::Line { points: points.into(), closed: false });
-        told(parts.map(wire).collect(), step, "triangles")
+        let what = match (step * each, short) {
+            (1, false) => None,
+            (1, true) => Some("short edges are left out".to_owned()),
+            (n, _) => Some(format!("1 of {n} edges")),
+        };
+        told(parts.map(wire).collect(), what)
     }
 
     /// A short line along each normal that is turned to the eye.
@@ -131,7 +147,7 @@ impl Seen<'_> {
         let shown = self.world.iter().step_by(step);
         let shown = shown.filter(|(at, normal)| self.both() || normal.dot(self.eye.position - *at) > 0.0);
         let lines = shown.filter_map(|&(at, normal)| self.line(&NORMAL, [at, at + normal * length])).collect();
-        told(lines, step, "vertices")
+        told(lines, (step > 1).then(|| format!("1 of {step} vertices")))
     }
 
     /// Cells where the nearest triangle of the mesh is seen from behind, one every so many pixels.
@@ -157,10 +173,10 @@ impl Seen<'_> {
 }
 
 /// Lines, and a label where only some of them are drawn.
-fn told(mut lines: Vec<Mark>, step: usize, what: &str) -> Vec<Mark> {
-    let first = lines.first().filter(|_| step > 1).map(|line| (line.look, line.shape.clone()));
-    if let Some((look, Shape::Line { points, .. })) = first {
-        lines.push(Mark::new(look, "", Shape::Label(points[0], format!("1 of {step} {what}"))));
+fn told(mut lines: Vec<Mark>, what: Option<String>) -> Vec<Mark> {
+    let first = lines.first().map(|line| (line.look, line.shape.clone()));
+    if let Some(((look, Shape::Line { points, .. }), what)) = first.zip(what) {
+        lines.push(Mark::new(look, "", Shape::Label(points[0], what)));
     }
     lines
 }
@@ -208,7 +224,7 @@ mod tests {
     #[test]
     fn what_faces_away_has_edges_and_normals_only_where_both_sides_are_seen() {
         for (layer, z, edges, normals) in [(FRONT, 4.0, 5, 4), (FRONT, -4.0, 0, 0), (BOTH, -4.0, 5, 4)] {
-            let found = seen(layer, z, |seen| (seen.wires(MOST, None).len(), seen.normals(MOST).len()));
+            let found = seen(layer, z, |seen| (seen.wires(MOST, 0.0, None).len(), seen.normals(MOST).len()));
             assert_eq!(found, (edges, normals), "{layer} {z}");
         }
     }
@@ -222,7 +238,7 @@ mod tests {
                     raster.row(y, columns, depth, &mut vec![NONE; depth.len()]);
                 };
                 let nearest = hides.then(|| Depths::new(seen.moment.size_px, row));
-                seen.wires(MOST, nearest.as_ref())
+                seen.wires(MOST, 0.0, nearest.as_ref())
             });
             let length = |mark: &Mark| match &mark.shape {
                 Shape::Line { points, .. } => (points[1] - points[0]).hypot(),
@@ -243,11 +259,22 @@ mod tests {
 
     #[test]
     fn there_are_never_too_many_and_a_label_says_so() {
-        let (wires, normals) = seen(FRONT, 4.0, |seen| (seen.wires(3, None), seen.normals(2)));
+        let (wires, normals) = seen(FRONT, 4.0, |seen| (seen.wires(3, 0.0, None), seen.normals(2)));
         assert_eq!((wires.len(), normals.len()), (4, 3), "with the labels");
-        for (marks, text) in [(wires, "1 of 2 triangles"), (normals, "1 of 2 vertices")] {
+        for (marks, text) in [(wires, "1 of 2 edges"), (normals, "1 of 2 vertices")] {
             let label = marks.last().map(|mark| mark.shape.clone());
             assert!(matches!(&label, Some(Shape::Label(_, told)) if told == text), "{label:?}");
+        }
+    }
+
+    #[test]
+    fn of_short_edges_the_outline_is_left_and_a_label_says_so() {
+        // The square is 41 pixels wide, and its diagonal 58 long.
+        for (least, edges) in [(57.0, 5), (59.0, 4)] {
+            let wires = seen(FRONT, 4.0, |seen| seen.wires(MOST, least, None));
+            let (lines, labels): (Vec<_>, Vec<_>) =
+                wires.iter().partition(|mark| matches!(mark.shape, Shape::Line { .. }));
+            assert_eq!((lines.len(), labels.len()), (edges, 5 - edges), "{least}");
         }
     }
 

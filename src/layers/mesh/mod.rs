@@ -30,7 +30,7 @@ use self::model::MeshLayer;
 use super::parts::materials::{List, Materials, Of, Use, What};
 use super::parts::measures::Measures;
 use super::parts::moment::{Moment, Space};
-use super::parts::pass::Pass;
+use super::parts::pass::{self, Pass};
 use super::parts::readout::ReadOut;
 use super::parts::repeat::{self, Repeat};
 use super::parts::shots::{Laid, Laying, Lying};
@@ -149,7 +149,11 @@ impl Technique for MeshLayer {
     }
 
     fn has_pass(&self, pass: &Pass) -> bool {
-        if slots::OF_SURFACES.passes.contains(pass) { self.surface.slot().explains() } else { self.strokes.is_some() }
+        match pass {
+            pass if pass::PASSES.contains(&pass) => true,
+            pass if slots::OF_SURFACES.passes.contains(pass) => self.surface.slot().explains(),
+            _ => self.strokes.is_some(),
+        }
     }
 
     fn sketched(&self) -> &'static [&'static str] {

@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use super::frame::Seen;
 use super::synth::Synth;
-use super::{around, marks, plan, probe};
+use super::{around, marks, plan, probe, unseen};
 use crate::base::geometry;
 use crate::base::pixels::Linear;
 use crate::base::problem::Problem;
@@ -98,6 +98,10 @@ impl Ready for Synth {
 
     fn under(&self, pixel: (usize, usize), moment: &Moment) -> Option<Under> {
         probe::under(self, pixel, moment)
+    }
+
+    fn is_in_frame(&self, moment: &Moment) -> bool {
+        unseen::is_in_frame(self, moment)
     }
 
     fn reach(&self, t: f64, ways: &[DVec3]) -> Option<Vec<f64>> {

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::model::{MeshLayer, Sides};
 use super::odd;
 use super::pose::Placed;
+use super::synth::Synth;
 use crate::base::mesh::Mesh;
 use crate::base::problem::Problem;
 use crate::layers::parts::moment::Moment;
@@ -68,7 +69,8 @@ pub fn warning(layer: &MeshLayer, mesh: &Mesh, moments: &[Moment]) -> Option<Pro
         return nothing("/pose/scale", "its scale is 0", "make scale 1");
     }
     let both = layer.sides == Sides::Both;
-    let mut views: Vec<View> = moments.iter().filter_map(|moment| View::new(layer, mesh, bounds, moment)).collect();
+    let view = |moment: &Moment| View::new(layer.pose.at(moment.t), mesh, bounds, moment);
+    let mut views: Vec<View> = moments.iter().filter_map(view).collect();
     views.dedup();
     let mut why = views.iter().filter_map(View::of_box).max();
     views.retain(|view| view.of_box().is_none());
@@ -81,6 +83,13 @@ pub fn warning(layer: &MeshLayer, mesh: &Mesh, moments: &[Moment]) -> Option<Pro
     }
     let (path, what, cure) = why?.told();
     nothing(path, &what, cure)
+}
+
+/// Whether a part of the mesh of a layer that is ready is in the frame; what stands before it does not count.
+pub fn is_in_frame(synth: &Synth, moment: &Moment) -> bool {
+    let Some(bounds) = synth.mesh.bounds() else { return false };
+    let view = View::new(synth.pose.at(synth.time(moment)), &synth.mesh, bounds, moment);
+    view.is_none_or(|view| view.of_box().is_none() && view.shows(&synth.mesh, synth.sides == Sides::Both))
 }
 
 /// The mesh at one moment.
@@ -99,8 +108,8 @@ struct View {
 
 impl View {
     /// `None` without a camera.
-    fn new(layer: &MeshLayer, mesh: &Mesh, (low, high): (DVec3, DVec3), moment: &Moment) -> Option<View> {
-        let (eye, placed) = (moment.eye?, layer.pose.at(moment.t));
+    fn new(placed: Placed, mesh: &Mesh, (low, high): (DVec3, DVec3), moment: &Moment) -> Option<View> {
+        let eye = moment.eye?;
         let half = eye.middle_px / eye.focal_px;
         let sides = [[1.0, 0.0, half.x], [-1.0, 0.0, half.x], [0.0, 1.0, half.y], [0.0, -1.0, half.y]];
         // A bend keeps the distance from the model's origin.

@@ -85,6 +85,8 @@ pub struct View {
     pub spacing_px: f64,
     /// The same for marks that are cells of color.
     pub cell_px: f64,
+    /// Lines shorter than this, in pixels of the picture, run together.
+    pub least_px: f64,
     /// Scene times in [0, 1] for marks that change with every frame: the current one, then earlier ones, each drawn
     /// fainter.
     pub times: Vec<f64>,

@@ -75,6 +75,18 @@ pub fn fit(reach: Reach, [back, up]: [DVec3; 2], fov: f64, size: (usize, usize))
     Some([distance, (nearest - deepest) / 2.0].map(|along| beside + back * along))
 }
 
+/// Whether something may reach into what an eye sees: on the inner side of each plane that bounds that. What is in the frame
+/// itself, and reaches nowhere in space, does.
+pub fn may_see(reach: Reach, eye: &Eye) -> bool {
+    let half = eye.middle_px / eye.focal_px;
+    let sides = [[1.0, 0.0, half.x], [-1.0, 0.0, half.x], [0.0, 1.0, half.y], [0.0, -1.0, half.y], [0.0, 0.0, 1.0]];
+    let [right, up, back] = [0, 1, 2].map(|axis| eye.turn.row(axis));
+    let ways = sides.map(|[x, y, ahead]| right * x + up * y - back * ahead);
+    let least = [0.0, 0.0, 0.0, 0.0, NEAR_M];
+    let inside = |((far, way), least): ((f64, DVec3), f64)| far - way.dot(eye.position) >= least;
+    reach(&ways).is_none_or(|far| far.into_iter().zip(ways).zip(least).all(inside))
+}
+
 /// How many units of the last digit that matters a meter has, at this distance.
 fn fine(distance: f64) -> f64 {
     (0..10).map(ten_to).find(|parts| distance * parts >= UNITS).unwrap_or(1e9)
@@ -150,6 +162,23 @@ mod tests {
         let places: Vec<_> = places.collect();
         [places.iter().copied().reduce(|a, b| a.min(b)), places.iter().copied().reduce(|a, b| a.max(b))]
             .map(Option::unwrap)
+    }
+
+    #[test]
+    fn what_lies_beyond_a_side_of_the_frame_is_not_seen() {
+        let eye = Eye::new([DVec3::new(0.0, 0.0, 4.0), DVec3::ZERO, DVec3::Y], 90.0, (200, 100));
+        for (middle, sees) in [
+            ([0.0, 0.0, 0.0], true),
+            ([0.0, 0.0, 6.0], false),
+            ([8.5, 0.0, 0.0], true),
+            ([10.5, 0.0, 0.0], false),
+            ([0.0, -5.2, 0.0], true),
+            ([0.0, -5.6, 0.0], false),
+        ] {
+            let ball = Ball { middle: DVec3::from(middle), radius: 1.0 };
+            assert_eq!(may_see(&|ways| ball.reach(ways), &eye), sees, "{middle:?}");
+        }
+        assert!(may_see(&|_| None, &eye), "what is in the frame itself");
     }
 
     #[test]

@@ -79,6 +79,13 @@ impl Fall {
         (LEAST_LIFE..self.most).contains(&life).then_some(life)
     }
 
+    /// So many pieces of it, from one end to the other; nothing if it never meets the pool.
+    pub fn pieces(&self, count: usize) -> Vec<[DVec3; 2]> {
+        let Some(life) = self.air_time() else { return Vec::new() };
+        let at = |i: usize| self.laws.at(&self.path, life * i as f64 / count as f64).0;
+        (0..count).map(|i| [at(i), at(i + 1)]).collect()
+    }
+
     /// Where it lands, and how fast.
     pub fn end(&self) -> Option<(DVec3, DVec3)> {
         Some(self.laws.at(&self.path, self.air_time()?))
@@ -189,6 +196,15 @@ pub fn aimed(layer: &WaterfallLayer, path: &str, ray: &Ray) -> Result<(String, V
     Ok((format!("/lip/{index}/velocity"), json!(velocity.to_array())))
 }
 
+/// The line of the node at `path` if it ended where a ray meets the pool; `None` if it cannot.
+pub fn would_fall(layer: &WaterfallLayer, path: &str, ray: &Ray) -> Option<Fall> {
+    let values = Values::of(layer);
+    let (_, node) = node(&values, path).ok()?;
+    let at = ray.meets_level(values.pool)?;
+    let velocity = Fall::new(&values, node).landing(Some(at.x), Some(at.z)).ok()?;
+    Some(Fall::new(&values, &Node { velocity, ..*node }))
+}
+
 /// Where the line of the node at `path` ends.
 ///
 /// # Errors
@@ -268,7 +284,12 @@ mod tests {
         assert_eq!(path, "/lip/1/velocity");
         let landed = Fall::of(&layer, &json!({ "at": [1, 2, 0], "velocity": velocity })).unwrap().end().unwrap().0;
         assert!((landed - place).length() < 1e-9, "{landed}");
+        let fall = would_fall(&layer, "/lip/1", &ray).unwrap();
+        let pieces = fall.pieces(4);
+        assert!((pieces[3][1] - place).length() < 1e-9 && pieces[0][0] == DVec3::new(1.0, 2.0, 0.0), "{pieces:?}");
+        assert!(pieces.windows(2).all(|pair| pair[0][1] == pair[1][0]) && pieces.len() == 4);
         let sky = eye.ray_in_world(DVec2::new(100.0, -100.0));
+        assert!(would_fall(&layer, "/lip/1", &sky).is_none());
         assert!(aimed(&layer, "/lip/1", &sky).unwrap_err().contains("the pool (y -0.5) is not seen there"));
         for path in ["/lip", "/lip/2", "/look"] {
             assert!(aimed(&layer, path, &ray).unwrap_err().contains("select one"), "{path}");

@@ -76,6 +76,15 @@ fn of_nodes(synth: &Synth, moment: &Moment, eye: &Eye) -> Vec<Mark> {
     marks
 }
 
+/// A line on its own, from a node to where it lands.
+pub fn of_fall(fall: &Fall, moment: &Moment) -> Vec<Mark> {
+    let Some(eye) = moment.eye else { return Vec::new() };
+    let pieces = fall.pieces(PIECES).into_iter().filter_map(|ends| line(moment, &eye, ends));
+    let drawn = pieces.map(|points| Mark::new(&NEXT, "/lip", Shape::Line { points: points.into(), closed: false }));
+    let end = fall.end().and_then(|(at, _)| spot(moment, &eye, at));
+    drawn.chain(end.map(|at| Mark::new(&LANDING, "/lip", Shape::Dot(at)))).collect()
+}
+
 fn of_line(synth: &Synth, (moment, eye): (&Moment, &Eye), of: &Line, (look, path): (&'static Look, &str)) -> Vec<Mark> {
     let at = |age: f64| synth.values.laws.at(&of.path, age).0;
     let end = |i: usize| at(of.life * i as f64 / PIECES as f64);

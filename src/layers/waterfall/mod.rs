@@ -45,8 +45,10 @@ use serde_json::{Value, json};
 use self::model::WaterfallLayer;
 use super::parts::derived::Derived;
 use super::parts::goal::Goal;
+use super::parts::marks::Mark;
 use super::parts::materials::{List, Materials, Of, Use, What};
 use super::parts::moment::{Moment, Space};
+use super::parts::pass::{self, Pass};
 use super::parts::picking::Picks;
 use super::parts::readout::{Entry, ReadOut};
 use super::ready::{Making, Ready};
@@ -155,6 +157,15 @@ impl Technique for WaterfallLayer {
         landing::aimed(self, path, ray)
     }
 
+    fn aimed_marks(&self, path: &str, ray: &Ray, moment: &Moment) -> Vec<Mark> {
+        landing::would_fall(self, path, ray).map_or_else(Vec::new, |fall| marks::of_fall(&fall, moment))
+    }
+
+    /// Sprites have no surfaces, which the passes that all layers share are of.
+    fn has_pass(&self, pass: &Pass) -> bool {
+        !pass::PASSES.contains(&pass)
+    }
+
     fn goal(&self, path: &str) -> Result<Goal, String> {
         landing::goal(self, path)
     }
@@ -237,7 +248,8 @@ fn node(items: &[Value], index: usize) -> Value {
         }
         (None, None) => [0.0, 2.0, 0.0],
     };
-    let mut node = index.checked_sub(1).and_then(|i| items.get(i)?.as_object().cloned()).unwrap_or_default();
+    // In all else it is like its neighbor.
+    let mut node = items.get(index.saturating_sub(1)).and_then(|item| item.as_object().cloned()).unwrap_or_default();
     node.insert("at".into(), json!(place));
     Value::Object(node)
 }

@@ -9,6 +9,7 @@ use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
 use winit::keyboard::ModifiersState;
 
 use super::clock::Clock;
+use super::hurry::Hurry;
 use super::manner::Manner;
 use super::mouse::Mouse;
 use super::opened::{Opened, first_size};
@@ -38,6 +39,8 @@ pub struct App {
     /// Keys that are held with others.
     pub(super) held: ModifiersState,
     pub(super) clock: Clock,
+    /// Whether changes come one right after the other.
+    pub(super) hurry: Hurry,
     /// The size that the window is to grow to once its first picture is drawn.
     pub(super) grows_to: Option<PhysicalSize<u32>>,
     /// The scene that is on its way to the GPU, and the next one.
@@ -76,6 +79,7 @@ impl App {
             held: ModifiersState::empty(),
             grows_to: None,
             clock: Clock::default(),
+            hurry: Hurry::default(),
             sending: None,
             waiting: None,
             owed: None,

@@ -19,6 +19,9 @@ const GAP_PX: f64 = 16.0;
 const TIMES: f64 = 0.6;
 const SAID: f64 = 0.45;
 
+/// While the window looks past everything.
+const NOTHING: &str = "nothing of the scene is seen from here: 5 shows everything, 0 ends the own view";
+
 /// The rail along which time runs, in physical pixels.
 pub fn rail(state: &State) -> Rect {
     let (area, scale) = (state.area(), state.scale);
@@ -98,8 +101,8 @@ fn row(state: &State, letters: &Letters) -> Row {
 impl Row {
     /// Whether what is said is a message that the bar has no room for. What is being done is told in few words, and changes.
     fn is_above(&self, state: &State, letters: &Letters) -> bool {
-        let messages = [&state.words.told, &state.no_pass];
-        let is_message = self.color == WARNING || messages.iter().any(|one| one.as_ref() == Some(&self.said));
+        let messages = [state.words.told.as_deref(), state.no_pass.as_deref(), Some(NOTHING)];
+        let is_message = self.color == WARNING || messages.contains(&Some(self.said.as_str()));
         is_message && letters.width(&self.said, TEXT_PX * state.scale) > self.room
     }
 }
@@ -130,7 +133,7 @@ fn said(state: &State) -> (String, Color) {
     let words = &state.words;
     let explained = if !state.has_picture() {
         Some(words.progress.clone().unwrap_or_else(|| state.waits_for()))
-    } else if let Some(work) = state.work.filter(|work| work.percent.is_some()) {
+    } else if let Some(work) = state.work.filter(|work| work.is_long) {
         Some(work.to_string())
     } else if state.drawing && !state.transport.playing {
         Some("drawing the frame".to_owned())
@@ -138,6 +141,8 @@ fn said(state: &State) -> (String, Color) {
         Some(why.clone())
     } else if words.told.is_some() {
         words.told.clone()
+    } else if state.sees_nothing {
+        Some(NOTHING.to_owned())
     } else if let Some(pass) = &state.pass {
         Some(format!("pass {pass}"))
     } else if state.shows("view-seam") {
@@ -287,6 +292,11 @@ mod tests {
         state.passes = vec!["shade"];
         state.run("next-pass");
         assert_eq!(said(&state).0, "pass shade, D shows the next, Backspace the one before");
+        state.sees_nothing = true;
+        assert!(said(&state).0.starts_with("pass shade, D shows"), "an answer to a key comes first");
+        state.run("field-wider");
+        assert_eq!(said(&state).0, NOTHING);
+        state.sees_nothing = false;
         state.run("view-seam");
         assert_eq!(said(&state).0, "pass shade", "how to go on is said once");
         state.run("pass color");
@@ -303,9 +313,12 @@ mod tests {
     fn before_the_first_picture_the_bar_says_what_is_waited_for() {
         let mut state = State::default();
         assert_eq!(said(&state).0, "opening");
-        state.work = Some(Work { what: "synthesising", percent: None });
+        state.work = Some(Work { what: "synthesising", is_long: false, percent: None });
+        assert_eq!(said(&State { work: state.work, ..State::for_tests() }).0, "", "what may soon be done");
+        state.work = Some(Work { what: "synthesising", is_long: true, percent: None });
+        assert_eq!(said(&State { work: state.work, ..State::for_tests() }).0, "synthesising");
         assert_eq!(said(&state).0, "synthesising");
-        state.work = Some(Work { what: "synthesising", percent: Some(34) });
+        state.work = Some(Work { what: "synthesising", is_long: true, percent: Some(34) });
         assert_eq!(said(&state).0, "synthesising: 34 %");
         assert_eq!(said(&State { work: state.work, ..State::for_tests() }).0, "synthesising: 34 %", "later ones too");
         assert_eq!(said(&State { drawing: true, ..State::for_tests() }).0, "drawing the frame");
@@ -330,7 +343,7 @@ mod tests {
             assert!(fits || glyphs.count() >= cure.chars().filter(|c| !c.is_whitespace()).count(), "{width}");
             assert!(canvas.strokes.iter().all(|s| s.b[0] <= width as f32 && f64::from(s.b[1]) <= area.y1), "{width}");
         }
-        let mut state = State { work: Some(Work { what: "synthesising", percent: Some(3) }), ..state() };
+        let mut state = State { work: Some(Work { what: "synthesising", is_long: true, percent: Some(3) }), ..state() };
         state.resize(Size::new(200.0, 400.0), 1.0);
         let area = state.area().to_rect();
         assert_eq!(whole(&mut Canvas::default(), &state, &letters, area), area);

@@ -61,8 +61,8 @@ fn marked(canvas: &mut Canvas, state: &State) {
 
 /// A ring where what is dragged would go.
 fn dragged(canvas: &mut Canvas, state: &State) {
-    let Some(at) = state.dragged else { return };
-    let (at, scale) = (state.viewport.screen_from_image(at, state.area()), state.scale);
+    let Some((_, at)) = &state.dragged else { return };
+    let (at, scale) = (state.viewport.screen_from_image(*at, state.area()), state.scale);
     let ring: Vec<Point> = (0..24)
         .map(|k| {
             let angle = f64::from(k) * TAU / 24.0;

@@ -36,6 +36,7 @@ impl App {
         }
         if self.told_view != self.state.own {
             self.told_view = self.state.own;
+            self.hurry.changed(Instant::now());
             self.reply(ToEditor::Camera(self.state.own_camera()));
         }
         self.owed.take().into_iter().for_each(|reply| self.reply(reply));
@@ -56,11 +57,16 @@ impl App {
         }
     }
 
+    /// Whether one picture follows the other: it plays, or a key is held.
+    fn runs(&mut self) -> bool {
+        self.state.transport.playing || self.hurry.is_on(Instant::now())
+    }
+
     /// A new picture took so long: sprites are left out if it is too long to play.
     fn took(&mut self, time: Option<Duration>) {
         let sprites = self.shown.as_ref().is_some_and(Show::has_sprites);
         let before = self.state.thin.left_out();
-        match self.state.transport.playing && sprites {
+        match self.runs() && sprites {
             true => time.into_iter().for_each(|time| self.state.thin.took(time.as_secs_f64())),
             false => self.state.thin = Thin::default(),
         }
@@ -73,7 +79,7 @@ impl App {
     fn advance(&mut self) {
         let (passed, fps) = self.clock.tick();
         if !self.state.transport.playing {
-            if std::mem::take(&mut self.state.thin).left_out() > 0 {
+            if !self.runs() && std::mem::take(&mut self.state.thin).left_out() > 0 {
                 self.report();
             }
             return;

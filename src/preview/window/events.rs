@@ -207,7 +207,7 @@ impl ApplicationHandler<Event> for App {
                 ControlFlow::WaitUntil(Instant::now() + HIDDEN)
             }
             None => self.open_by.map_or(ControlFlow::Wait, ControlFlow::WaitUntil),
-            _ => ControlFlow::Wait,
+            _ => self.hurry.ends().map_or(ControlFlow::Wait, ControlFlow::WaitUntil),
         };
         event_loop.set_control_flow(flow);
     }

@@ -81,6 +81,7 @@ impl App {
 
     fn show(&mut self, event_loop: &ActiveEventLoop, ready: Ready, show: Show, reduced: Option<String>) {
         self.state.work = None;
+        self.hurry.changed(Instant::now());
         self.load(&ready);
         // A window that opened without a picture stays as it is until there is one.
         self.grows_to = self.shown.is_none().then(|| self.first_size(event_loop));

@@ -118,7 +118,7 @@ impl Mouse {
             (Drag::Along, Some(from), Some(to)) => state.drag_along(to - from),
             (Drag::Time, _, Some(to)) => scrub(state, to.x),
             (Drag::Border, _, Some(to)) => state.drag_wipe(to.x),
-            (Drag::Grip, ..) => state.dragged = state.pointed(),
+            (Drag::Grip, ..) => state.dragged = self.dragged.clone().zip(state.pointed()),
             _ => {}
         }
     }
@@ -348,7 +348,7 @@ mod tests {
         mouse.moved(&mut state, Some((97.0, 100.0).into()));
         mouse.pressed(&mut state, Button::Left);
         mouse.moved(&mut state, Some((200.0, 60.0).into()));
-        assert_eq!(state.dragged, Some(Point::new(100.0, 30.0)), "it is seen under the pointer");
+        assert_eq!(state.dragged, Some(("/a".to_owned(), Point::new(100.0, 30.0))), "it is seen under the pointer");
         mouse.released(&mut state, now);
         assert_eq!(state.dragged, None);
         assert_eq!(drag(&mut mouse, &mut state, Button::Middle, &[(97.0, 100.0), (90.0, 100.0)], now), Asked::Nothing);

@@ -1,5 +1,6 @@
 //! What is open once there is something to show: the window with its GPU and surface, and one drawing of it.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -11,6 +12,7 @@ use winit::window::{CursorIcon, Fullscreen, Window};
 use super::chrome;
 use super::manner::{Manner, PLACE};
 use super::mouse::Shape;
+use super::own_view::OwnView;
 use super::pass::{self, For};
 use super::screen::{Drawn, Pictures, Screen, Strokes};
 use super::show::{Cached, Show, jump_at, seen, thinned, under};
@@ -48,6 +50,8 @@ pub struct Opened {
     looked: Option<Instant>,
     shape: Shape,
     passes: pass::Kept,
+    /// From where it was found out whether anything is seen: the window's own view, the scene time and the scene.
+    looked_from: Option<(OwnView, f64, u64)>,
     /// Whether the CPU makes the picture.
     by_cpu: bool,
 }
@@ -73,8 +77,9 @@ impl Opened {
             window.set_visible(true);
         }
         let (gpu, screen) = Screen::open(instance, window.clone())?;
-        let (shape, passes, by_cpu) = Default::default();
-        Ok(Opened { window, gpu, screen, hidden: false, covered: false, desk, looked: None, shape, passes, by_cpu })
+        let (shape, passes, looked_from, by_cpu) = Default::default();
+        let (hidden, covered, looked) = Default::default();
+        Ok(Opened { window, gpu, screen, hidden, covered, desk, looked, shape, passes, looked_from, by_cpu })
     }
 
     /// The same window on a new device.
@@ -83,8 +88,9 @@ impl Opened {
         let instance = gpu.instance().clone();
         drop((gpu, screen)); // a window has one surface at a time
         let (gpu, screen) = Screen::open(instance, window.clone())?;
-        let (passes, by_cpu) = Default::default();
-        Ok(Opened { window, gpu, screen, hidden: false, covered, desk, looked: None, shape, passes, by_cpu })
+        let (passes, looked_from, by_cpu) = Default::default();
+        let (hidden, looked) = Default::default();
+        Ok(Opened { window, gpu, screen, hidden, covered, desk, looked, shape, passes, looked_from, by_cpu })
     }
 
     /// Whether the window can be seen: checked now and then while it can, and at every drawing while it cannot.
@@ -146,6 +152,12 @@ impl Opened {
                     under(&show.scene, &synth, state.transport.scene_time(&state.timeline), at)
                 });
                 let pictures = self.pictures(state, show, (marks.revision, wake))?;
+                let looks = state.own.map(|own| (own, state.transport.scene_time(&state.timeline), marks.revision));
+                if std::mem::replace(&mut self.looked_from, looks) != looks {
+                    let from = |(own, t, _): (OwnView, f64, u64)| (seen(&show.synth, Some(&own.camera())), t);
+                    let nothing = |(synth, t): (Cow<Synth>, f64)| !synth.shows_something(t);
+                    state.sees_nothing = looks.map(from).is_some_and(nothing);
+                }
                 // An older frame would show something else there.
                 state.under.take_if(|_| state.drawing);
                 pictures
@@ -153,7 +165,8 @@ impl Opened {
             None => self.nothing()?,
         };
         let chrome = chrome::draw(state, letters);
-        let layers = [&marks.fixed, &marks.moving, &marks.labels, &chrome].map(|canvas| &canvas.strokes[..]);
+        let layers =
+            [&marks.fixed, &marks.moving, &marks.dragged, &marks.labels, &chrome].map(|canvas| &canvas.strokes[..]);
         let drawn = self.screen.draw(&self.gpu, state, &pictures, &Strokes { layers, letters });
         self.gpu.device().take_uncaught()?;
         drawn

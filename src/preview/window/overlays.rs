@@ -11,6 +11,9 @@ const FIELD_PX: f64 = 22.0;
 /// A square of the field in colors, in logical pixels of the screen.
 const WHEEL_PX: f64 = 4.0;
 
+/// Lines shorter than this, in logical pixels of the screen, run together.
+const LEAST_PX: f64 = 2.0;
+
 impl State {
     /// Pixels of the picture between two of those whose jump vectors are shown, when they are about `px` logical pixels
     /// of the screen apart: a power of two.
@@ -48,6 +51,7 @@ impl State {
             shown: shown.map(|overlay| overlay.name).collect(),
             spacing_px: self.field_spacing(),
             cell_px: self.spacing(WHEEL_PX),
+            least_px: LEAST_PX * self.scale / self.viewport.zoom,
             selection: self.selection.clone(),
             ..View::default()
         }

@@ -48,7 +48,7 @@ pub struct Screen {
 
 /// What is drawn over the picture, from below to the top, and the letters that it was written with.
 pub struct Strokes<'a> {
-    pub layers: [&'a [Stroke]; 4],
+    pub layers: [&'a [Stroke]; 5],
     pub letters: &'a Letters,
 }
 

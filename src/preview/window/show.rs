@@ -16,7 +16,7 @@ use crate::base::pointer::Pointer;
 use crate::layers::parts::marks::{Mark, Shape, View};
 use crate::layers::space::camera::Camera;
 use crate::render::Synth;
-use crate::render::overlay::{longest, overlay, overlays};
+use crate::render::overlay::{aimed, longest, overlay, overlays};
 use crate::render::reduce::reduced;
 use crate::scene::{Scene, words::item_of};
 
@@ -103,6 +103,8 @@ pub struct Cached {
     /// Those that change with every frame.
     pub moving: Canvas,
     moved_for: Option<(View, Sight, Option<OwnView>)>,
+    /// What is dragged, as it would be.
+    pub dragged: Canvas,
     /// Names and numbers, above all else of the overlay.
     pub labels: Canvas,
     /// See [`State::grips`].
@@ -135,6 +137,7 @@ impl Cached {
         let sight = Sight { viewport, window, scale, grid, revision: self.revision, letters: letters.generation() };
         let fixed = Some((state.fixed_view(), sight.clone()));
         let moving = Some((state.moving_view(), sight, state.own));
+        self.follow_drag(state, show);
         if self.made_for != fixed {
             self.made_for = fixed;
             self.make_fixed(state, show, letters);
@@ -148,6 +151,15 @@ impl Cached {
             self.moving = marks::draw(&found, viewport, area, scale);
             self.moving.strokes.extend(labels::draw(&found, viewport, area, scale, letters).strokes);
         }
+    }
+
+    fn follow_drag(&mut self, state: &State, show: &Show) {
+        self.dragged = Canvas::default();
+        let Some((pointer, at)) = &state.dragged else { return };
+        let synth = seen(&show.synth, state.own_camera().as_ref());
+        let time = state.transport.scene_time(&state.timeline);
+        let found = aimed(&show.scene, &synth, time, (pointer, *at));
+        self.dragged = marks::draw(&found, &state.viewport, state.area(), state.scale);
     }
 
     fn make_fixed(&mut self, state: &State, show: &Show, letters: &Letters) {

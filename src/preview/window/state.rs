@@ -35,6 +35,8 @@ pub struct State {
     pub layers: Vec<Arc<dyn Ready>>,
     /// Where the window looks from, if that is not where the scene's camera does.
     pub own: Option<OwnView>,
+    /// Whether nothing of the scene is in the frame from there.
+    pub sees_nothing: bool,
     /// Zoom and place.
     pub viewport: Viewport,
     /// Playing.
@@ -69,8 +71,8 @@ pub struct State {
     pub marked: Option<Point>,
     /// What can be dragged: its JSON pointer, and where in the picture it is.
     pub grips: Vec<(String, Point)>,
-    /// Where what is dragged by a grip would go, in pixels of the picture.
-    pub dragged: Option<Point>,
+    /// What is dragged by a grip, as a JSON pointer, and where it would go, in pixels of the picture.
+    pub dragged: Option<(String, Point)>,
     /// The jump vector under the pointer, where what is shown of jump vectors asks for it.
     pub jump: Option<Vec2>,
     /// What stands under the pointer of layers in space.
@@ -109,6 +111,7 @@ impl Default for State {
             around: None,
             layers: Vec::new(),
             own: None,
+            sees_nothing: false,
             viewport: Viewport::default(),
             transport: Transport::default(),
             timeline: Timeline::default(),

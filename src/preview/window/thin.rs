@@ -1,4 +1,4 @@
-//! Sprites that are left out while it plays, where frames would take too long otherwise; at rest all are shown.
+//! Sprites that are left out while it plays or a key is held, where frames would take too long otherwise; at rest all are shown.
 
 /// A frame that takes longer than this, in seconds, shows fewer sprites from then on.
 const LONGEST: f64 = 0.04;
@@ -32,7 +32,7 @@ impl Thin {
         WORDS[self.step]
     }
 
-    /// A frame took so many seconds while it played.
+    /// A frame took so many seconds while one followed the other.
     pub fn took(&mut self, seconds: f64) {
         let count = |is: bool, before: u32| if is { before + 1 } else { 0 };
         self.slow = count(seconds > LONGEST, self.slow);

@@ -9,7 +9,9 @@ use crate::base::problem::Problem;
 pub struct Work {
     /// What is being done.
     pub what: &'static str,
-    /// How far it is, once it has taken a while.
+    /// Whether it has taken a while already.
+    pub is_long: bool,
+    /// How far it is then, where that is known.
     pub percent: Option<u8>,
 }
 

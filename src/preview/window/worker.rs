@@ -149,10 +149,36 @@ pub fn progress(what: &'static str, send: impl Fn(Event) -> bool + Send + 'stati
         // Whoever holds it tells at this moment.
         let Ok(mut state) = state.try_lock() else { return };
         if state.0.elapsed() >= BETWEEN {
-            (state.1)(Event::Work(Work { what, percent: Some(percent) }));
+            (state.1)(Event::Work(Work { what, is_long: true, percent: Some(percent) }));
             state.0 = Instant::now();
         }
     })
+}
+
+/// Tells the event loop of what takes a while though nobody counts how far it is; nothing once this is dropped.
+struct Late {
+    /// Ends the wait when it is dropped.
+    ended: Option<Sender<()>>,
+    waits: Option<JoinHandle<()>>,
+}
+
+impl Late {
+    fn begin(what: &'static str, send: impl Fn(Event) -> bool + Send + 'static) -> Late {
+        let (ended, wait) = mpsc::channel();
+        let waits = std::thread::spawn(move || {
+            if wait.recv_timeout(BETWEEN) == Err(RecvTimeoutError::Timeout) {
+                send(Event::Work(Work { what, is_long: true, percent: None }));
+            }
+        });
+        Late { ended: Some(ended), waits: Some(waits) }
+    }
+}
+
+impl Drop for Late {
+    fn drop(&mut self) {
+        self.ended = None;
+        self.waits.take().into_iter().for_each(|waits| drop(waits.join()));
+    }
 }
 
 /// Starts both threads. `send` passes an event to the event loop; it returns false once that is gone.
@@ -206,10 +232,14 @@ fn synthesise(
     while let Ok(first) = work.recv() {
         let Job { scene, revision, how } = work.try_iter().last().unwrap_or(first);
         let began = Instant::now();
-        send(Event::Work(Work { what: READING, percent: None }))?;
+        send(Event::Work(Work { what: READING, is_long: false, percent: None }))?;
         let made = fault::caught(|| {
-            let (mut materials, problems) = load(&scene, progress(READING, tell.clone()));
-            send(Event::Work(Work { what: SYNTHESISING, percent: None }))?;
+            let (mut materials, problems) = {
+                let _late = Late::begin(READING, tell.clone());
+                load(&scene, progress(READING, tell.clone()))
+            };
+            send(Event::Work(Work { what: SYNTHESISING, is_long: false, percent: None }))?;
+            let _late = Late::begin(SYNTHESISING, tell.clone());
             materials.progress = Some(Arc::new(progress(SYNTHESISING, tell.clone())));
             materials.leaves_out = true;
             Ok((how.synth(&scene, &materials, previous.as_ref()), problems))
@@ -284,6 +314,20 @@ mod tests {
     }
 
     #[test]
+    fn what_takes_a_while_is_told_though_nobody_counts() {
+        for (rest, times) in [(Duration::ZERO, 0), (2 * BETWEEN, 1)] {
+            let (sender, told) = mpsc::channel();
+            let late = Late::begin("working", move |event| sender.send(event).is_ok());
+            std::thread::sleep(rest);
+            drop(late);
+            let told: Vec<Event> = told.iter().collect();
+            assert_eq!(told.len(), times, "{told:?}");
+            let is_long = |event: &Event| matches!(event, Event::Work(Work { is_long: true, percent: None, .. }));
+            assert!(told.iter().all(is_long), "{told:?}");
+        }
+    }
+
+    #[test]
     fn progress_is_told_once_it_takes_a_while() {
         let (sender, told) = mpsc::channel();
         let progress = progress("working", move |event| sender.send(event).is_ok());
@@ -294,6 +338,9 @@ mod tests {
         progress.done(10);
         drop(progress);
         let told: Vec<Event> = told.iter().collect();
-        assert!(matches!(told[..], [Event::Work(Work { what: "working", percent: Some(60) })]), "{told:?}");
+        assert!(
+            matches!(told[..], [Event::Work(Work { what: "working", is_long: true, percent: Some(60) })]),
+            "{told:?}"
+        );
     }
 }

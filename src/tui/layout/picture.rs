@@ -87,10 +87,11 @@ fn switched(state: &State, part: &Part, protocol: Protocol, selects: bool) -> Vi
     if shown.is_empty() {
         return View::default();
     }
-    let [spacing_px, cell_px] = (if protocol == Protocol::Blocks { [4.0, 1.0] } else { [22.0, 4.0] })
-        .map(|dots| overlay::spacing(dots * part.scale));
+    let dots = if protocol == Protocol::Blocks { [4.0, 1.0, 3.0] } else { [22.0, 4.0, 2.0] };
+    let [spacing, cell, least_px] = dots.map(|dots| dots * part.scale);
+    let [spacing_px, cell_px] = [spacing, cell].map(overlay::spacing);
     let times = overlay::times(state.play.time, state.document().scene().timeline.wrap);
-    View { shown, spacing_px, cell_px, times, selection: Some(state.focused()), ..View::default() }
+    View { shown, spacing_px, cell_px, least_px, times, selection: Some(state.focused()), ..View::default() }
 }
 
 fn wanted(state: &State) -> Option<Wanted> {
