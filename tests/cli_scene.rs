@@ -299,7 +299,7 @@ fn check_lists_every_problem() {
     // What is wrong with the files is told beside what is wrong with the text.
     let lines: Vec<_> = ran.out.lines().collect();
     assert_eq!(lines[0], "layers.face.zonse: unknown field \"zonse\" (did you mean \"zones\"?)");
-    assert!(lines.len() == 2 && lines[1].starts_with("images.dog.path: there is no such file"), "{ran:?}");
+    assert!(lines.len() == 2 && lines[1].starts_with("images.dog.path: dog.png: there is no such file"), "{ran:?}");
     assert_eq!(plica(folder.path(), &["check", "none.plica.json"]).status, 1);
 }
 
