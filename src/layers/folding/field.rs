@@ -238,26 +238,45 @@ impl Prepared {
         Point::new(x + k as f64 + self.place.x, y + self.place.y)
     }
 
-    /// Tells the crossings of pixels of a stretch that may have any. Few neighbors at a time: only the sides within reach
-    /// of their paths are looked at.
+    /// Tells the crossings of pixels of a stretch that have any. Most stretches are far from all regions; of others few
+    /// neighbors at a time: only the sides within reach of their paths are looked at.
     fn cross(&self, stretch: &Stretch, inside: &[bool], tell: &mut dyn FnMut(usize, Crossings)) {
-        let (Some((_, regions)), (low, high)) = (&self.fold, self.range) else { return };
-        let jump = |k: usize| Vec2::new(stretch.x[k], stretch.y[k]);
+        let Some((_, regions)) = &self.fold else { return };
+        if inside.is_empty() || regions.sides_within(self.reach(stretch, 0..inside.len())).is_empty() {
+            return;
+        }
         for first in (0..inside.len()).step_by(FEW) {
-            let few = || (first..inside.len().min(first + FEW)).filter(|k| inside[*k]);
-            let path = |k| Rect::from_points(self.q(stretch, k) + jump(k) * low, self.q(stretch, k) + jump(k) * high);
-            let Some(reach) = few().map(path).reduce(|reach, path| reach.union(path)) else { continue };
-            let sides = regions.sides_within(reach);
+            let few = first..inside.len().min(first + FEW);
+            let sides = regions.sides_within(self.reach(stretch, few.clone()));
             if sides.is_empty() {
                 continue;
             }
             let members = regions.memberships(self.q(stretch, first), FEW);
             let mut member = vec![false; regions.count()];
-            for k in few() {
+            for k in few.filter(|k| inside[*k]) {
                 member.iter_mut().zip(&members).for_each(|(one, of_region)| *one = of_region[k - first]);
-                tell(k, regions.crossings(self.q(stretch, k), jump(k), self.range, &sides, &member));
+                let jump = Vec2::new(stretch.x[k], stretch.y[k]);
+                let crossings = regions.crossings(self.q(stretch, k), jump, self.range, &sides, &member);
+                if !(crossings.ahead.is_empty() && crossings.behind.is_empty()) {
+                    tell(k, crossings);
+                }
             }
         }
+    }
+
+    /// A box around the paths of pixels of a stretch, at least one.
+    fn reach(&self, stretch: &Stretch, pixels: Range<usize>) -> Rect {
+        let (low, high) = self.range;
+        let along = |jumps: &[f64]| {
+            let [least, most] = vectorised(
+                #[inline(always)]
+                || extremes(&jumps[pixels.clone()]),
+            );
+            [(least * high).min(most * low), (most * high).max(least * low)]
+        };
+        let ([left, right], [up, down]) = (along(stretch.x), along(stretch.y));
+        let (first, last) = (self.q(stretch, pixels.start), self.q(stretch, pixels.end - 1));
+        Rect::new(first.x + left, first.y + up, last.x + right, last.y + down)
     }
 
     /// The feather weight within `bounds`: only the outline's sides near it are looked at.
@@ -373,6 +392,22 @@ fn narrow(stretch: &Stretch, inside: &[bool], jumps: &mut [[f32; 2]]) {
     }
 }
 
+/// The least and the greatest of some numbers.
+#[inline(always)]
+fn extremes(numbers: &[f64]) -> [f64; 2] {
+    const WIDE: usize = 8;
+    let (mut least, mut most) = ([f64::INFINITY; WIDE], [f64::NEG_INFINITY; WIDE]);
+    let (many, rest) = numbers.as_chunks::<WIDE>();
+    for numbers in many {
+        for k in 0..WIDE {
+            least[k] = if numbers[k] < least[k] { numbers[k] } else { least[k] };
+            most[k] = if numbers[k] > most[k] { numbers[k] } else { most[k] };
+        }
+    }
+    let least = least.iter().chain(rest).fold(f64::INFINITY, |a, b| a.min(*b));
+    [least, most.iter().chain(rest).fold(f64::NEG_INFINITY, |a, b| a.max(*b))]
+}
+
 /// Neighboring rows of a field, and the cells that they lie in.
 struct Band<'a> {
     area: Area,
@@ -399,6 +434,13 @@ fn bands<'a>(cells: &'a [Cell], area: &Area, mut rows: Rows<'a>) -> Vec<Band<'a>
         rows = (inside.1, jumps.1, in_region.1);
     }
     bands
+}
+
+/// Which pixels of a picture of `size` have their `place` inside the polygon.
+pub fn mask(polygon: &Polygon, (width, height): (usize, usize), place: Vec2) -> Grid<bool> {
+    let mut marked = vec![false; width * height];
+    spans(polygon, &Area { from: [0; 2], to: [width as u32, height as u32] }, place, &mut marked);
+    Grid::from_cells(width, height, marked)
 }
 
 /// Marks the pixels of `area`, row by row, whose `place` is inside the polygon.
