@@ -3,6 +3,7 @@ import fcntl
 import os
 import pty
 import select
+import shutil
 import signal
 import statistics
 import struct
@@ -111,21 +112,28 @@ def waited(do, times=11):
 
 
 def demo():
-    return ROOT / "profiles/blink/blink.plica.json"
+    """A copy of a demo, since the editor keeps a journal beside a scene."""
+    folder = PLACE / "scenes/blink"
+    shutil.rmtree(folder, ignore_errors=True)
+    shutil.copytree(ROOT / "profiles/blink", folder)
+    return folder / "blink.plica.json"
 
 
 def first_frame(programs):
-    out = PLACE / "scenes/first.png"
-    return waited(lambda: programs.run([programs.plica, "render", demo(), "-o", out, "--frames", "0", "--force"]))
+    scene = demo()
+    command = [programs.plica, "render", scene, "-o", scene.with_name("first.png"), "--frames", "0", "--force"]
+    return waited(lambda: programs.run(command))
 
 
 def editor(programs):
     """Until the screen of the editor shows the scene, in a terminal without graphics that answers at once."""
+    scene = demo()
+
     def opened():
         pid, terminal = pty.fork()
         if pid == 0:
             os.environ.update(TERM="xterm-256color", XDG_STATE_HOME=str(PLACE / "state"))
-            os.execv(programs.plica, [programs.plica, "edit", str(demo())])
+            os.execv(programs.plica, [programs.plica, "edit", str(scene)])
         fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("4H", 40, 120, 0, 0))
         shown = b""
         while b"lashes" not in shown and select.select([terminal], [], [], 10)[0]:

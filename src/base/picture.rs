@@ -140,6 +140,24 @@ struct Codes<'a, C, const N: usize, const CODES: usize> {
     light: &'a Light<CODES>,
 }
 
+impl<C: Copy + Into<usize> + Into<f32>, const N: usize, const CODES: usize> Codes<'_, C, N, CODES> {
+    /// The codes of red, green and blue.
+    #[inline]
+    fn colors(cell: &[C; N]) -> [usize; 3] {
+        if N < 3 { [cell[0].into(); 3] } else { [0, 1, 2].map(|c| cell[c].into()) }
+    }
+
+    /// Light, premultiplied by what the last channel says.
+    #[inline]
+    fn premultiplied([r, g, b]: [f32; 3], cell: &[C; N]) -> Rgba {
+        if N % 2 == 1 {
+            return [r, g, b, 1.0];
+        }
+        let alpha = Into::<f32>::into(cell[N - 1]) / (CODES - 1) as f32;
+        [r * alpha, g * alpha, b * alpha, alpha]
+    }
+}
+
 impl<C: Copy + Into<usize> + Into<f32>, const N: usize, const CODES: usize> Texels for Codes<'_, C, N, CODES> {
     type Cell = [C; N];
 
@@ -150,12 +168,21 @@ impl<C: Copy + Into<usize> + Into<f32>, const N: usize, const CODES: usize> Texe
 
     #[inline]
     fn of(&self, cell: &[C; N]) -> Rgba {
-        let [r, g, b] = self.light.of(if N < 3 { [cell[0].into(); 3] } else { [0, 1, 2].map(|c| cell[c].into()) });
-        if N % 2 == 1 {
-            return [r, g, b, 1.0];
+        Self::premultiplied(self.light.of(Self::colors(cell)), cell)
+    }
+
+    #[inline]
+    fn row(&self, first: usize, out: &mut [Rgba]) {
+        let pixels = out.iter_mut().zip(&self.cells[first..]);
+        if self.light.matrix.is_some() {
+            return pixels.for_each(|(out, cell)| *out = self.of(cell));
         }
-        let alpha = Into::<f32>::into(cell[N - 1]) / (CODES - 1) as f32;
-        [r * alpha, g * alpha, b * alpha, alpha]
+        // The tables are found once: in the loop they would be looked up for each pixel.
+        let [red, green, blue] = self.light.curves.each_ref().map(|curve| &**curve);
+        for (out, cell) in pixels {
+            let [r, g, b] = Self::colors(cell);
+            *out = Self::premultiplied([red[r], green[g], blue[b]], cell);
+        }
     }
 }
 

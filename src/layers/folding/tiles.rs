@@ -13,8 +13,8 @@ use crate::layers::parts::moment::Columns;
 use crate::layers::ready::Still;
 
 /// Columns and rows of a tile: wide, since memory is read in rows; small enough to stay close to the processor.
-const ACROSS: usize = 256;
-const DOWN: usize = 8;
+const ACROSS: usize = 64;
+const DOWN: usize = 16;
 const CELLS: usize = ACROSS * DOWN;
 /// For so many texels a sampler, what all of a tile read is turned into light at once.
 const MOST: usize = 8;
