@@ -10,6 +10,7 @@ use kurbo::{BezPath, Point, Rect, Vec2};
 use rayon::prelude::*;
 
 use super::chains::{Chains, Line, Part};
+use super::number;
 
 /// Curves are flattened to within this many pixels: so fine that a path which grazes a curve still meets it where it
 /// should. That many sides are looked at only where it matters ([`Chains`]): four of them lie within 0.001 px of their
@@ -22,6 +23,11 @@ pub type Xy = [f64; 2];
 /// The point at a position of a document.
 pub fn point([x, y]: Xy) -> Point {
     Point::new(x, y)
+}
+
+/// The nearest place with so many decimals.
+pub fn rounded(at: DVec3, decimals: u32) -> DVec3 {
+    DVec3::from(at.to_array().map(|v| number::rounded(v, decimals)))
 }
 
 /// A vector of a document.

@@ -27,6 +27,12 @@ pub fn rounded(value: f64, decimals: u32) -> f64 {
     (value * parts).round() / parts
 }
 
+/// How many decimals tell a size in so many units of the last of them, up to nine.
+pub fn decimals(size: f64, units: f64) -> u32 {
+    const MOST: u32 = 9;
+    (0..MOST).find(|decimals| size * powi(10.0, *decimals) >= units).unwrap_or(MOST)
+}
+
 /// Rounds away the floating-point noise of a computed number.
 pub fn tidy(value: f64) -> f64 {
     let rounded = rounded(value, 9);
@@ -41,6 +47,13 @@ mod tests {
     fn numbers_are_rounded_to_decimals() {
         for (value, decimals, expected) in [(0.126, 2, 0.13), (-1.25, 1, -1.3), (2.5, 0, 3.0), (0.1 + 0.2, 9, 0.3)] {
             assert_eq!(rounded(value, decimals), expected);
+        }
+    }
+
+    #[test]
+    fn sizes_have_as_many_decimals_as_they_need() {
+        for (size, expected) in [(2e4, 0), (1e4, 0), (9999.0, 1), (0.5, 5), (1e-9, 9), (0.0, 9)] {
+            assert_eq!(decimals(size, 1e4), expected, "{size}");
         }
     }
 

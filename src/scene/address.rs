@@ -56,7 +56,10 @@ fn spread(
     let before = found.len();
     let tokens = field::laid(document, &path).unwrap_or_else(|| match place.shape.body() {
         Body::Numbers(count) => (0..count).map(|i| i.to_string()).collect(),
-        _ => field::steps(place).into_iter().map(|(token, _)| token).collect(),
+        Body::Row(_) | Body::List(..) | Body::Map(_) | Body::Object | Body::Tagged(_) => {
+            field::steps(place).into_iter().map(|(token, _)| token).collect()
+        }
+        Body::Number { .. } | Body::Text | Body::Bool | Body::Choice => Vec::new(),
     });
     let mut why = None;
     for token in tokens {
@@ -158,7 +161,8 @@ fn key(place: Place, token: &Token) -> Option<String> {
             let named = named.or_else(|| ["x", "y"].iter().position(|axis| *axis == token.text && count == 2));
             Some(named.map_or_else(|| token.text.clone(), |index| index.to_string()))
         }
-        _ => Some(token.text.clone()),
+        Body::Map(_) | Body::Object | Body::Tagged(_) => Some(token.text.clone()),
+        Body::Number { .. } | Body::Text | Body::Bool | Body::Choice => Some(token.text.clone()),
     }
 }
 

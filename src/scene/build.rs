@@ -283,10 +283,8 @@ pub fn new_item(document: &Document, list: &str, index: usize) -> Option<(usize,
 
 /// The tag of the value at a place; empty if it has none.
 pub(super) fn variant_of(place: Place<'_>) -> &str {
-    match place.shape.body() {
-        Body::Tagged(tag) => place.value.and_then(|value| value.get(tag)?.as_str()).unwrap_or_default(),
-        _ => "",
-    }
+    let Body::Tagged(tag) = place.shape.body() else { return "" };
+    place.value.and_then(|value| value.get(tag)?.as_str()).unwrap_or_default()
 }
 
 fn unique(name: &str, items: &[Value]) -> String {

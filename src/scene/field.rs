@@ -66,6 +66,36 @@ pub enum Kind {
     Reference(&'static str),
 }
 
+impl Kind {
+    /// Whether it is a list, whose items have indexes.
+    pub fn is_list(&self) -> bool {
+        matches!(self, Kind::List(_))
+    }
+
+    /// Whether it has fields that are known by name.
+    pub fn is_object(&self) -> bool {
+        match self {
+            Kind::Object | Kind::Tagged { .. } => true,
+            Kind::Number { .. } | Kind::Text | Kind::Bool | Kind::Choice(_) | Kind::Numbers(_) => false,
+            Kind::List(_) | Kind::Map(_) | Kind::Reference(_) => false,
+        }
+    }
+
+    /// The words that it can be, or its tag; none if it is no choice of words.
+    pub fn words(&self) -> &[Choice] {
+        match self {
+            Kind::Choice(all) | Kind::Tagged { variants: all, .. } => all,
+            Kind::Number { .. } | Kind::Text | Kind::Bool | Kind::Numbers(_) | Kind::List(_) | Kind::Map(_) => &[],
+            Kind::Object | Kind::Reference(_) => &[],
+        }
+    }
+
+    /// The name of its tag and the values of that, if it has one.
+    pub fn tag(&self) -> Option<(&'static str, &[Choice])> {
+        if let Kind::Tagged { tag, variants } = self { Some((*tag, variants)) } else { None }
+    }
+}
+
 /// One word of a choice.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Choice {
@@ -217,8 +247,7 @@ pub fn as_written(document: &Document, pointer: &str) -> (String, Option<(String
 
 /// The items of the list at a place, written or not; `None` if it is no list.
 fn list_of(place: Place<'_>) -> Option<&[Value]> {
-    matches!(place.shape.body(), Body::List(..))
-        .then(|| place.value.and_then(Value::as_array).map_or(&[] as &[_], Vec::as_slice))
+    place.shape.body().is_list().then(|| place.value.and_then(Value::as_array).map_or(&[] as &[_], Vec::as_slice))
 }
 
 /// The places directly below `pointer`: the fields of an object in the schema's order, including those that are not
@@ -262,7 +291,8 @@ pub fn steps(place: Place<'_>) -> Vec<(String, Place<'_>)> {
             });
             inner.collect()
         }
-        _ => Vec::new(),
+        Body::Object | Body::Tagged(_) => Vec::new(),
+        Body::Number { .. } | Body::Text | Body::Bool | Body::Choice | Body::Numbers(_) => Vec::new(),
     }
 }
 
@@ -280,10 +310,8 @@ fn described(parent: Place, pointer: &str, token: &str, place: Place) -> Child {
 
 /// The name of one of a fixed number of values, if it has one.
 fn column(parent: Place, token: &str) -> Option<&'static str> {
-    match parent.shape.body() {
-        Body::Row(_) | Body::Numbers(_) => parent.shape.column(pointer::index(token)?),
-        _ => None,
-    }
+    parent.shape.body().count()?;
+    parent.shape.column(pointer::index(token)?)
 }
 
 /// How many items the list at a place has.

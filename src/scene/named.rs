@@ -48,7 +48,8 @@ pub fn below(address: &str, (shape, body): (Shape, Body), token: &str, below: Pl
     let step = match body {
         Body::List(..) => name_of(below.value).map(|name| spelled(&name, true)),
         Body::Numbers(_) | Body::Row(_) => pointer::index(token).and_then(|i| shape.column(i)).map(str::to_owned),
-        _ => None,
+        Body::Map(_) | Body::Object | Body::Tagged(_) => None,
+        Body::Number { .. } | Body::Text | Body::Bool | Body::Choice => None,
     };
     let step = step.unwrap_or_else(|| spelled(token, false));
     if address.is_empty() { step } else { format!("{address}.{step}") }

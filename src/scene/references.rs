@@ -57,7 +57,7 @@ pub fn problems(scene: &Scene) -> Vec<Problem> {
             let hint = nearest(name, known.iter().copied());
             let hint = hint.unwrap_or_else(|| match list {
                 List::Shapes => "the scene has no shapes yet: share one of its paths (:share NAME)".to_owned(),
-                _ => format!("add it to the scene's {key}"),
+                List::Images | List::Meshes | List::Clips | List::Layers => format!("add it to the scene's {key}"),
             });
             let message = format!("there is no {item} {}", quoted(name));
             unknown.push(Problem::error(format!("/layers/{i}{}", used.at), message).hint(hint));

@@ -49,6 +49,40 @@ pub enum Body {
     Tagged(&'static str),
 }
 
+impl Body {
+    /// Whether it is a list, whose items have indexes.
+    pub fn is_list(&self) -> bool {
+        matches!(self, Body::List(..))
+    }
+
+    /// Whether it has fields that are known by name.
+    pub fn is_object(&self) -> bool {
+        match self {
+            Body::Object | Body::Tagged(_) => true,
+            Body::Number { .. } | Body::Text | Body::Bool | Body::Choice | Body::Numbers(_) | Body::Row(_) => false,
+            Body::List(..) | Body::Map(_) => false,
+        }
+    }
+
+    /// The shape of everything in it, if there may be any number of them.
+    pub fn item(&self) -> Option<Shape> {
+        match self {
+            Body::List(item, ..) | Body::Map(item) => Some(*item),
+            Body::Number { .. } | Body::Text | Body::Bool | Body::Choice | Body::Numbers(_) | Body::Row(_) => None,
+            Body::Object | Body::Tagged(_) => None,
+        }
+    }
+
+    /// How many values it has, if their number is fixed and they may have columns.
+    pub fn count(&self) -> Option<usize> {
+        match self {
+            Body::Numbers(count) | Body::Row(count) => Some(*count),
+            Body::Number { .. } | Body::Text | Body::Bool | Body::Choice | Body::List(..) | Body::Map(_) => None,
+            Body::Object | Body::Tagged(_) => None,
+        }
+    }
+}
+
 impl Shape {
     /// The whole document.
     pub fn root() -> Shape {
@@ -123,10 +157,8 @@ impl Shape {
         let item = Shape::of(&self.body["items"], Some(self.outer.unwrap_or(self.site)));
         let length = |key, otherwise| self.body.get(key).and_then(Value::as_u64).map_or(otherwise, |n| n as usize);
         let (min, max) = (length("minItems", 0), length("maxItems", usize::MAX));
-        match item.body() {
-            Body::Number { .. } if min == max => Body::Numbers(min),
-            _ => Body::List(item, min, max),
-        }
+        let numbers = min == max && matches!(item.body(), Body::Number { .. });
+        if numbers { Body::Numbers(min) } else { Body::List(item, min, max) }
     }
 
     /// The JSON type; "null" beside another type is left out (it makes the shape optional).
@@ -214,7 +246,8 @@ impl Shape {
         match self.body() {
             Body::Number { integer } => integer,
             Body::Numbers(_) => Shape::of(&self.body["items"], None).has_whole_numbers(),
-            _ => false,
+            Body::Text | Body::Bool | Body::Choice | Body::Row(_) | Body::List(..) | Body::Map(_) => false,
+            Body::Object | Body::Tagged(_) => false,
         }
     }
 
@@ -259,10 +292,8 @@ impl Shape {
 
     /// The branch that `value` chooses: the shape itself if it has no tag, `None` if the tag is missing or unknown.
     pub fn branch(self, value: Option<&Value>) -> Option<Shape> {
-        match self.body() {
-            Body::Tagged(tag) => self.variant(value?.get(tag)?.as_str()?),
-            _ => Some(self),
-        }
+        let Body::Tagged(tag) = self.body() else { return Some(self) };
+        self.variant(value?.get(tag)?.as_str()?)
     }
 
     /// The field `name` of an object whose tag, if it has one, is in `value`.

@@ -67,7 +67,7 @@ pub fn item_of(pointer: &str) -> Option<&str> {
     let mut begin = layer;
     for end in lengths {
         let token = &pointer[begin + 1..end];
-        let of_list = here.iter().any(|shape| matches!(shape.body(), Body::List(..)));
+        let of_list = here.iter().any(|shape| shape.body().is_list());
         here = here.into_iter().flat_map(|shape| shape.below(token)).collect();
         if of_list && here.iter().any(|shape| shape.property(None, "name").is_some()) {
             return Some(&pointer[..end]);
@@ -84,7 +84,7 @@ const LAYERS: &str = "/layers";
 fn one(json: &Value, operation: &PatchOperation) -> Option<String> {
     let path = operation.path().as_str();
     Some(match operation {
-        PatchOperation::Add(add) if is_item(json, path) => {
+        PatchOperation::Add(add) if is_in_list(json, path) => {
             let at = if path.ends_with("/-") { end_of(json, path) } else { path.to_owned() };
             format!("{} added{}", place(json, &at, Some(&add.value)), kind(json, &at, &add.value))
         }
@@ -107,10 +107,12 @@ fn one(json: &Value, operation: &PatchOperation) -> Option<String> {
     })
 }
 
-fn is_item(json: &Value, path: &str) -> bool {
-    Pointer(path).split().and_then(|(parent, _)| Place::of(json, parent)).is_some_and(|parent| {
-        matches!(parent.shape.body(), Body::List(..)) && parent.value.is_some_and(Value::is_array)
-    })
+/// Whether a place is in a list that is written, or at its end.
+fn is_in_list(json: &Value, path: &str) -> bool {
+    Pointer(path)
+        .split()
+        .and_then(|(parent, _)| Place::of(json, parent))
+        .is_some_and(|parent| parent.shape.body().is_list() && parent.value.is_some_and(Value::is_array))
 }
 
 fn end_of(json: &Value, path: &str) -> String {
@@ -136,7 +138,7 @@ fn change(json: &Value, path: &str, new: &Value) -> String {
 fn removal(json: &Value, path: &str) -> String {
     let at = place(json, path, None);
     let Some(found) = Place::of(json, path) else { return format!("{at} deleted") };
-    match found.shape.default().filter(|default| !default.is_null() && !is_item(json, path)) {
+    match found.shape.default().filter(|default| !default.is_null() && !is_in_list(json, path)) {
         Some(default) => {
             let old = found.value.map(|value| words(Some(found.shape), value)).unwrap_or_default();
             let default = words(Some(found.shape), default);

@@ -6,6 +6,7 @@ use super::frame::Seen;
 use super::pose::{Bend, Pose};
 use super::synth::Synth;
 use crate::base::pixels::Linear;
+use crate::base::{geometry, number};
 use crate::layers::parts::moment::Moment;
 use crate::layers::parts::shots::{SeenFrom, Taken};
 use crate::layers::space::eye::Eye;
@@ -30,6 +31,8 @@ const WAYS: [(&str, [f64; 3]); 14] = [
 ];
 /// The vertical field of view, in degrees.
 const FOV: f64 = 30.0;
+/// So many units of the last decimal the distance is at least.
+const UNITS: f64 = 1e5;
 
 /// What is seen of a mesh at scene time `t`, unbent and without strokes, but in the light that falls on it in its pose: pictures
 /// of so many pixels a side, in the model's coordinates. One that shows nothing is left out.
@@ -43,7 +46,9 @@ pub fn around(synth: &Synth, t: f64, side_px: usize) -> Vec<Taken> {
         let back = DVec3::from(back).normalize_or_zero();
         let up = if back.y.abs() < 1.0 { DVec3::Y } else { DVec3::Z };
         let [position, target] = fit(&|ways| own.mesh.reach(ways), [back, up], FOV, size_px)?;
-        let [position, target] = [position, target].map(|at| short(at, position.distance(target)));
+        // Without decimals that do not matter at this distance.
+        let decimals = number::decimals(position.distance(target), UNITS);
+        let [position, target] = [position, target].map(|at| geometry::rounded(at, decimals));
         let world = |at| placed.point(at, DVec3::ZERO).0;
         let eye = Eye::new([world(position), world(target), placed.turn * up], FOV, size_px);
         let moment = Moment { eye: Some(eye), ..unseen };
@@ -52,14 +57,4 @@ pub fn around(synth: &Synth, t: f64, side_px: usize) -> Vec<Taken> {
         Some(Taken { name, from: SeenFrom::Standing { position, target, up, fov: Some(FOV) }, picture })
     });
     taken.filter(|taken| taken.picture.cells().iter().any(|cell| cell[3] > 0.0)).collect()
-}
-
-/// A place without decimals that do not matter at this distance.
-fn short(at: DVec3, distance: f64) -> DVec3 {
-    const DIGITS: f64 = 1e5;
-    let mut by = 1.0;
-    while distance > 0.0 && distance * by < DIGITS {
-        by *= 10.0;
-    }
-    (at * by).round() / by
 }

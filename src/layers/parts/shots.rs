@@ -3,6 +3,8 @@
 use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::marks::Mark;
@@ -53,6 +55,29 @@ pub enum SeenFrom {
         /// Its vertical field of view in degrees; `None` is the usual one.
         fov: Option<f64>,
     },
+}
+
+/// What a view feeds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Feeds {
+    /// The base coat and what depends on the view: a photograph.
+    #[default]
+    Both,
+    /// The base coat, which is seen from everywhere.
+    Independent,
+    /// What is seen only near its camera.
+    Dependent,
+}
+
+impl Feeds {
+    /// The document's words, in the order of the enum.
+    pub const WORDS: [&str; 3] = ["both", "independent", "dependent"];
+
+    /// The document's word for it.
+    pub fn word(self) -> &'static str {
+        Feeds::WORDS[self as usize]
+    }
 }
 
 /// A picture to be laid on a layer.
@@ -167,6 +192,13 @@ impl Shot {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_a_view_feeds_is_called_as_in_the_document() {
+        for feeds in [Feeds::Both, Feeds::Independent, Feeds::Dependent] {
+            assert_eq!(serde_json::to_value(feeds).unwrap(), feeds.word());
+        }
+    }
 
     #[test]
     fn a_camera_over_a_world_with_z_up_stands_where_it_did_when_that_is_turned() {

@@ -3,7 +3,8 @@
 use glam::DVec3;
 
 use super::eye::{Eye, NEAR_M};
-use crate::base::maths::{lerp, ten_to};
+use crate::base::maths::{lerp, powi};
+use crate::base::{geometry, number};
 
 /// What is to be seen reaches to at most this share of the frame.
 const SHARE: f64 = 0.9;
@@ -87,21 +88,16 @@ pub fn may_see(reach: Reach, eye: &Eye) -> bool {
     reach(&ways).is_none_or(|far| far.into_iter().zip(ways).zip(least).all(inside))
 }
 
-/// How many units of the last digit that matters a meter has, at this distance.
-fn fine(distance: f64) -> f64 {
-    (0..10).map(ten_to).find(|parts| distance * parts >= UNITS).unwrap_or(1e9)
-}
-
 /// Position and target in numbers as short as may be.
 pub fn short([position, target]: [DVec3; 2]) -> [DVec3; 2] {
-    let fine = fine(position.distance(target));
-    [position, target].map(|at| (at * fine).round() / fine)
+    let decimals = number::decimals(position.distance(target), UNITS);
+    [position, target].map(|at| geometry::rounded(at, decimals))
 }
 
 /// Whether two positions with their targets differ by no more than what [`short`] takes away.
 pub fn is_same(a: [DVec3; 2], b: [DVec3; 2]) -> bool {
     let far = [0, 1].map(|i| (a[i] - b[i]).abs().max_element());
-    far[0].max(far[1]) * fine(a[0].distance(a[1])) < SAME_UNITS + 0.5
+    far[0].max(far[1]) * powi(10.0, number::decimals(a[0].distance(a[1]), UNITS)) < SAME_UNITS + 0.5
 }
 
 /// How far something reaches beside lines of several slopes, on both sides of an axis of the frame.

@@ -57,11 +57,8 @@ fn fields(title: &str, shape: Shape, waiting: &mut Vec<(String, Shape)>) -> Stri
             kind += &format!(", default {default}");
         }
         text += &roff::tagged(name, &kind, field.help());
-        let inside = match field.body() {
-            Body::List(item, ..) | Body::Map(item) => item,
-            _ => field,
-        };
-        if matches!(inside.body(), Body::Object | Body::Tagged(_)) {
+        let inside = field.body().item().unwrap_or(field);
+        if inside.body().is_object() {
             let holder = if title == "the scene" { String::new() } else { format!("{title}: ") };
             waiting.push((format!("{holder}{name}"), inside));
         }

@@ -10,15 +10,12 @@ use super::feather;
 use crate::base::error::Result;
 use crate::base::problem::{nearest, quoted};
 use crate::files::{disk, paths, picture};
-use crate::layers::parts::shots::SeenFrom;
+use crate::layers::parts::shots::{Feeds, SeenFrom};
 use crate::ops::opened::Unloaded;
 use crate::ops::scene_options::{RecoveryOptions, SceneOptions};
 use crate::ops::{Context, set};
 use crate::scene::Document;
 use crate::scene::shots::{self, Image, Picture};
-
-/// What a view can feed, in the document's words.
-pub const KINDS: [&str; 3] = ["both", "independent", "dependent"];
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -42,7 +39,7 @@ pub struct Args {
     #[arg(long, value_name = "DEGREES")]
     fov: Option<f64>,
     /// What the view feeds
-    #[arg(long, value_name = "KIND", value_parser = KINDS)]
+    #[arg(long, value_name = "KIND", value_parser = Feeds::WORDS)]
     kind: Option<String>,
     #[command(flatten)]
     recovery: RecoveryOptions,

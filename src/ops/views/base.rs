@@ -6,12 +6,11 @@ use super::beside::FOLDER;
 use crate::base::error::{Error, Result};
 use crate::export::still;
 use crate::files::{disk, write};
+use crate::layers::parts::shots::Feeds;
 use crate::render::{self, Synth};
 use crate::scene::Document;
 use crate::scene::shots::{self, Image, Picture};
 
-/// What the pictures feed.
-const KIND: &str = "independent";
 /// A pixel beside what hides something is left out, or it would show on that.
 const EDGE_PX: f64 = 1.0;
 /// How many pixels the side of one may have.
@@ -44,7 +43,7 @@ impl Base {
                 name: format!("base-{}", taken.name),
                 image: Image::File(path.clone()),
                 from: taken.from,
-                kind: Some(KIND.into()),
+                kind: Some(Feeds::Independent.word().into()),
                 feather_px: 0.0,
                 edge_px: EDGE_PX,
                 guide: None,

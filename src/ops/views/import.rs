@@ -7,7 +7,6 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec3};
 use glob::Pattern;
 
-use super::add::KINDS;
 use super::beside::Beside;
 use super::{feather, table};
 use crate::base::error::{Error, Result};
@@ -16,7 +15,7 @@ use crate::base::problem::{Problem, quoted};
 use crate::files::cameras::{self, Cameras, Reading};
 use crate::files::{self, disk, models, paths, picture};
 use crate::layers::parts::materials::Materials;
-use crate::layers::parts::shots::{SeenFrom, Shot, misshapen};
+use crate::layers::parts::shots::{Feeds, SeenFrom, Shot, misshapen};
 use crate::ops::scene_options::{RecoveryOptions, SceneOptions};
 use crate::ops::{Context, set};
 use crate::scene::shots::{self, Image, Picture};
@@ -35,7 +34,7 @@ pub struct Args {
     #[arg(long, value_name = "DIR")]
     images: Option<PathBuf>,
     /// What the views feed
-    #[arg(long, value_name = "KIND", value_parser = KINDS)]
+    #[arg(long, value_name = "KIND", value_parser = Feeds::WORDS)]
     kind: Option<String>,
     /// Take every Nth picture only
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]

@@ -7,21 +7,18 @@ use glam::DVec3;
 use super::base::Base;
 use super::beside::{FOLDER, file};
 use crate::base::error::{Error, Result};
-use crate::base::number::rounded;
+use crate::base::geometry;
 use crate::base::problem::Problem;
 use crate::export::still;
 use crate::files::{disk, write};
 use crate::layers::parts::pass::SHADE;
-use crate::layers::parts::shots::SeenFrom;
+use crate::layers::parts::shots::{Feeds, SeenFrom};
 use crate::layers::space::camera::Camera;
 use crate::render::passes::Asked;
 use crate::render::{self, Synth};
 use crate::scene::Document;
 use crate::scene::presets::Applied;
 use crate::scene::shots::{self, Image, Picture};
-
-/// What a picture that is painted feeds, if nothing is said.
-const KIND: &str = "dependent";
 
 /// From where a layer is seen, and when.
 #[derive(Clone, Debug)]
@@ -65,7 +62,7 @@ impl Sight {
 
 /// A place without decimals that nobody can see.
 fn short(at: DVec3) -> DVec3 {
-    DVec3::from(at.to_array().map(|v| rounded(v, 6)))
+    geometry::rounded(at, 6)
 }
 
 /// Writes what is seen twice beside the scene, to be painted over and to be told apart from, and lays the first on the layer.
@@ -89,7 +86,7 @@ pub fn begin(
         name: name.to_owned(),
         image: Image::File(file(name, false)),
         from,
-        kind: Some(kind.unwrap_or(KIND).to_owned()),
+        kind: Some(kind.unwrap_or(Feeds::Dependent.word()).to_owned()),
         feather_px: 0.0,
         edge_px: 0.0,
         guide: Some(file(name, true)),

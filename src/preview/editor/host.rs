@@ -312,7 +312,7 @@ impl Shared {
                 ToEditor::Hello { .. } | ToEditor::Edit { .. } => {
                     return Err(Error::at("link", "a window said what only a script says"));
                 }
-                said => self.heard(said),
+                said @ (ToEditor::Pointer { .. } | ToEditor::Camera(_)) => self.heard(said),
             }
         }
         Ok(())

@@ -64,10 +64,8 @@ fn ask(scene: &Path) -> Result<Option<Joined>> {
 impl Joined {
     fn edit(&mut self, patch: Edit) -> Result<Vec<Problem>> {
         frame::write(&mut self.wire.writer, &ToEditor::Edit { revision: self.revision, patch })?;
-        match frame::read(&mut self.wire.reader, most())? {
-            Some(FromEditor::Edited(problems)) => Ok(problems),
-            _ => Err(gone()),
-        }
+        let answer = frame::read(&mut self.wire.reader, most())?;
+        answer.and_then(FromEditor::answer).ok_or_else(gone)
     }
 }
 

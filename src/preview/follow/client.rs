@@ -104,7 +104,7 @@ impl Client {
 
     /// Does what the editor says; returns whether that was the end.
     fn take(&mut self, said: FromEditor) -> Outcome<bool> {
-        let patched = matches!(said, FromEditor::Patch { .. } | FromEditor::Scene { .. });
+        let patched = said.is_of_the_document();
         match self.talk.take(said)? {
             Some(bye @ FromEditor::Bye(_)) if self.joined => {
                 self.talk.pass_on(bye)?;
@@ -115,7 +115,13 @@ impl Client {
                 self.load()?;
                 self.talk.notice(format!("{reason}; following the file"))?;
             }
-            _ => {}
+            // The talk has done these, or they are for another machine or a script.
+            Some(FromEditor::Hello { .. } | FromEditor::Patch { .. } | FromEditor::Scene { .. }) => {}
+            Some(FromEditor::Selection(_) | FromEditor::Transport(_) | FromEditor::Look { .. }) => {}
+            Some(FromEditor::View(_) | FromEditor::Views(_)) => {}
+            Some(FromEditor::Images(_) | FromEditor::Piece { .. }) => {}
+            Some(FromEditor::Notice(_) | FromEditor::Problems(_)) => {}
+            Some(FromEditor::Alive | FromEditor::Edited(_)) | None => {}
         }
         if patched {
             self.watch()?;

@@ -125,7 +125,11 @@ impl Far {
                 self.leave();
                 self.wait(reason)
             }
-            _ => Ok(()),
+            // The talk has done these, or they answer a script.
+            Some(FromEditor::Hello { .. } | FromEditor::Patch { .. } | FromEditor::Scene { .. }) => Ok(()),
+            Some(FromEditor::Selection(_) | FromEditor::Transport(_) | FromEditor::Look { .. }) => Ok(()),
+            Some(FromEditor::View(_) | FromEditor::Views(_)) => Ok(()),
+            Some(FromEditor::Alive | FromEditor::Edited(_)) | None => Ok(()),
         }
     }
 

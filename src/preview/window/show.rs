@@ -179,10 +179,8 @@ impl Cached {
 
 /// What a mark lets the mouse drag, and where that is.
 fn grip(mark: &Mark) -> Option<(String, Point)> {
-    match mark.shape {
-        Shape::Dot(at) if mark.look.is_grip => Some((mark.path.clone(), at)),
-        _ => None,
-    }
+    let Shape::Dot(at) = mark.shape else { return None };
+    mark.look.is_grip.then(|| (mark.path.clone(), at))
 }
 
 #[cfg(test)]

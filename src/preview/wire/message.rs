@@ -170,6 +170,22 @@ impl FromEditor {
 }
 
 impl FromEditor {
+    /// Whether the message changes the document.
+    pub fn is_of_the_document(&self) -> bool {
+        match self {
+            FromEditor::Patch { .. } | FromEditor::Scene { .. } => true,
+            FromEditor::Hello { .. } | FromEditor::Images(_) | FromEditor::Piece { .. } | FromEditor::Alive => false,
+            FromEditor::Notice(_) | FromEditor::Problems(_) | FromEditor::Edited(_) | FromEditor::Bye(_) => false,
+            FromEditor::Selection(_) | FromEditor::Transport(_) | FromEditor::Look { .. } => false,
+            FromEditor::View(_) | FromEditor::Views(_) => false,
+        }
+    }
+
+    /// The problems with an edit that the message answers; `None` for all other messages.
+    pub fn answer(self) -> Option<Vec<Problem>> {
+        if let FromEditor::Edited(problems) = self { Some(problems) } else { None }
+    }
+
     /// The message with only those of its commands that are to be obeyed; `None` if it was nothing else.
     pub fn obeying(self, obeyed: impl Fn(&String) -> bool) -> Option<FromEditor> {
         match self {

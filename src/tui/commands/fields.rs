@@ -63,9 +63,9 @@ fn walk(document: &Document, place: Place, pointer: &str, depth: usize, found: &
             let fields = place.shape.properties(value).into_iter().filter(|(_, shape)| !shape.is_fixed());
             fields.map(|(name, _)| name.to_owned()).collect()
         }
-        _ => Vec::new(),
+        Body::Number { .. } | Body::Text | Body::Bool | Body::Choice | Body::Numbers(_) => Vec::new(),
     };
-    let is_named = matches!(place.shape.body(), Body::Object | Body::Tagged(_));
+    let is_named = place.shape.body().is_object();
     for token in tokens {
         let (Some(below), at) = (place.step(&token), Pointer(pointer).join(&token)) else { continue };
         walk(document, below, &at, depth + 1, found);

@@ -159,7 +159,7 @@ fn told(state: &State, at: &str, field: &Field, cell: Option<&Cell>) -> Vec<Stri
         _ => at.to_owned(),
     };
     let path = plain(&address::address(document, &place));
-    let is_object = matches!(field.kind, Kind::Object | Kind::Tagged { .. });
+    let is_object = field.kind.is_object();
     let inside = if is_object { field::children(document, at) } else { Vec::new() };
     let inside: Vec<_> = inside.into_iter().filter(|child| !cell::is_node(&child.field.kind)).collect();
     if !path.is_empty() {

@@ -32,7 +32,7 @@ pub const COMMANDS: &[Command] =
 pub fn target(state: &State) -> Result<String, String> {
     match state.cursor.focus {
         Pane::Tree => Ok(state.cursor.node.clone()),
-        _ => state.sheet().pointer(state.cursor.row).ok_or("there is no row here".into()),
+        Pane::Table | Pane::Picture => state.sheet().pointer(state.cursor.row).ok_or("there is no row here".into()),
     }
 }
 

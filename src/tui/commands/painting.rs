@@ -10,7 +10,7 @@ use crate::layers::parts::shots::Put;
 use crate::scene::Edit;
 use crate::tui::layout::picture;
 use crate::tui::state::painting::{self, ALL, Painting, Sees};
-use crate::tui::state::{Pane, State};
+use crate::tui::state::{Pane, State, place};
 use crate::tui::text::plain;
 
 pub const COMMANDS: &[Command] = &[
@@ -88,7 +88,8 @@ fn sphere(state: &mut State, call: &Call) -> Done {
         let edit = Edit::set(document, &path, value);
         state.edit(edit, false)?;
         state.say("its extremes are points now, where it was gone: r moves the selected one, a adds one");
-        go_to(state, &format!("{path}/points/0"));
+        let points = place::lists(state.document(), &path);
+        go_to(state, &points.first().map_or(path, |points| format!("{points}/0")));
         return Ok(());
     }
     let list = list.unwrap_or_default();

@@ -59,6 +59,6 @@ fn target(state: &State) -> Option<Target<'_>> {
     let here = here(state);
     let lists = Pointer(&here).upward().map(|path| item_of(document, path).map_or(path, |(list, _)| list).to_owned());
     let inside = field::children(document, &state.cursor.node).into_iter();
-    let inside = inside.filter(|child| matches!(child.field.kind, Kind::List(_))).map(|child| child.pointer);
+    let inside = inside.filter(|child| child.field.kind.is_list()).map(|child| child.pointer);
     lists.chain(inside).find_map(|list| Target::of(document, &list))
 }

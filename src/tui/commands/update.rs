@@ -172,7 +172,9 @@ fn paste(state: &mut State, text: &str) {
                 state.complain(why);
             }
         }
-        _ => state.complain("close this first (Esc): rows are pasted into lists, text into what is being typed"),
+        Mode::Choice(_) | Mode::Pages(_) | Mode::Aim => {
+            state.complain("close this first (Esc): rows are pasted into lists, text into what is being typed")
+        }
     }
 }
 

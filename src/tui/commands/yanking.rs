@@ -264,7 +264,8 @@ fn fits(state: &State) -> Vec<Fit> {
             fits.push(Fit::List(path.to_owned(), end));
         }
         Kind::Map(_) => fits.push(Fit::Map(path.to_owned())),
-        _ => {}
+        Kind::Number { .. } | Kind::Text | Kind::Bool | Kind::Choice(_) | Kind::Numbers(_) => {}
+        Kind::Object | Kind::Tagged { .. } | Kind::Reference(_) => {}
     };
     for path in Pointer(&here(state)).upward() {
         let item = item_of(document, path);
@@ -362,9 +363,9 @@ fn fields(document: &Document, form: &str, value: &Value) -> Option<Way> {
 fn refusal(state: &State, value: &Value) -> String {
     let document = state.document();
     let here = here(state);
-    let list = Pointer(&here).upward().find_map(|path| match field::field(document, path)?.kind {
-        Kind::List(_) => Some(path.to_owned()),
-        _ => item_of(document, path).map(|(list, _)| list.to_owned()),
+    let list = Pointer(&here).upward().find_map(|path| match field::field(document, path)?.kind.is_list() {
+        true => Some(path.to_owned()),
+        false => item_of(document, path).map(|(list, _)| list.to_owned()),
     });
     let wanted = list.as_ref().map_or(here.clone(), |list| Pointer(list).join("-"));
     let why = misfit(document, &wanted, value).map(|problem| problem.to_string()).unwrap_or_default();

@@ -86,9 +86,10 @@ impl Cell {
     }
 
     fn changed(&self, document: &Document, number: f64) -> Option<Value> {
-        let json = |number: f64| match self.field.kind {
-            Kind::Number { integer: true } if number == number.trunc() => Value::from(number as i64),
-            _ => number::json(number),
+        let whole = self.field.kind == Kind::Number { integer: true };
+        let json = |number: f64| match whole && number == number.trunc() {
+            true => Value::from(number as i64),
+            false => number::json(number),
         };
         let both = |v: Vec2| Some(Value::from(vec![number::json(v.x), number::json(v.y)]));
         let old = derived::value(document, &self.pointer)?;
@@ -108,7 +109,7 @@ impl Cell {
 
 /// Whether something of this kind is a node.
 pub fn is_node(kind: &Kind) -> bool {
-    matches!(kind, Kind::Object | Kind::Tagged { .. } | Kind::List(_) | Kind::Map(_))
+    kind.is_object() || matches!(kind, Kind::List(_) | Kind::Map(_))
 }
 
 fn vector(value: &Value) -> Option<Vec2> {

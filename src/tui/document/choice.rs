@@ -83,7 +83,7 @@ pub fn options(document: &Document, kind: &Kind) -> Vec<(String, String)> {
             };
             entries.into_iter().map(|entry| (entry.name, path(&entry.pointer))).collect()
         }
-        _ => Vec::new(),
+        Kind::Number { .. } | Kind::Text | Kind::Numbers(_) | Kind::List(_) | Kind::Map(_) | Kind::Object => Vec::new(),
     }
 }
 

@@ -57,7 +57,7 @@ pub fn list(document: &Document) -> Vec<Listed> {
 
 fn below(document: &Document, place: Place, (at, address): (&str, &str), all: &mut Vec<Listed>) {
     let body = place.shape.body();
-    let items = matches!(body, Body::List(..));
+    let items = body.is_list();
     for (token, inner) in steps(document, place, at) {
         let (pointer, address) = (Pointer(at).join(&token), named::below(address, (place.shape, body), &token, inner));
         let mut words = match named::name_of(inner.value) {

@@ -2,7 +2,7 @@
 
 use crate::base::pointer::{self, Pointer};
 use crate::scene::Document;
-use crate::scene::field::{self, Kind};
+use crate::scene::field;
 
 /// Whether `path` is an item of a list.
 pub fn is_item(document: &Document, path: &str) -> bool {
@@ -12,7 +12,7 @@ pub fn is_item(document: &Document, path: &str) -> bool {
 /// The list and the index of an item that is written.
 pub fn item_of<'a>(document: &Document, path: &'a str) -> Option<(&'a str, usize)> {
     let (list, last) = Pointer(path).split()?;
-    let is_list = matches!(field::field(document, list)?.kind, Kind::List(_));
+    let is_list = field::field(document, list)?.kind.is_list();
     let named = || {
         let (written, missing) = field::as_written(document, path);
         pointer::index(&Pointer(&written).split()?.1).filter(|_| missing.is_none())

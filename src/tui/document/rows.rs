@@ -120,7 +120,9 @@ impl<'a> Target<'a> {
         let tag = match item.kind {
             Kind::Tagged { tag, variants } => Some((tag, variants.iter().map(|one| one.name).collect())),
             Kind::Object | Kind::Numbers(_) | Kind::Number { .. } => None,
-            _ => return None,
+            Kind::Text | Kind::Bool | Kind::Choice(_) | Kind::List(_) | Kind::Map(_) | Kind::Reference(_) => {
+                return None;
+            }
         };
         Some(Target { document, list: list.to_owned(), tag, specimen: Specimen::of(document, list, None)? })
     }
@@ -246,10 +248,7 @@ impl Specimen {
         }
         let mut item = with.json().pointer(&path)?.clone();
         let children = field::children(&with, &path);
-        let tag = match field::field(&with, &path)?.kind {
-            Kind::Tagged { tag, .. } => Some(tag),
-            _ => None,
-        };
+        let tag = field::field(&with, &path)?.kind.tag().map(|(tag, _)| tag);
         let name = |child: &field::Child| Pointer(&child.pointer).split().map(|(_, name)| name).unwrap_or_default();
         let mut musts = vec![path.clone()];
         for child in &children {
@@ -330,7 +329,9 @@ pub fn read(cell: &Cell, text: &str) -> Result<Value, String> {
         Kind::Tagged { tag, .. } => Ok(json!({ *tag: text })),
         Kind::Bool if ["yes", "true", "1"].contains(&text) => Ok(true.into()),
         Kind::Bool => Ok(false.into()),
-        _ => Err(format!("{} cannot be pasted as text: paste the item as JSON", field.name)),
+        Kind::Number { .. } | Kind::Numbers(_) | Kind::List(_) | Kind::Map(_) | Kind::Object => {
+            Err(format!("{} cannot be pasted as text: paste the item as JSON", field.name))
+        }
     }
 }
 

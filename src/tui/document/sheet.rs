@@ -199,10 +199,8 @@ impl Sheet {
 fn blocks(place: Place, node: &str) -> Vec<Block> {
     let mut blocks = Vec::new();
     for (child, place) in field::below(place, node) {
-        let inside = match &child.field.kind {
-            Kind::List(of) if is_flat(&of.kind) => Some(field::count(place)),
-            _ => None,
-        };
+        let has_rows = matches!(&child.field.kind, Kind::List(of) if is_flat(&of.kind));
+        let inside = has_rows.then(|| field::count(place));
         blocks.push(Block { pointer: child.pointer.clone(), items: None });
         blocks.extend(inside.map(|count| Block { pointer: child.pointer, items: Some(count) }));
     }
@@ -212,14 +210,14 @@ fn blocks(place: Place, node: &str) -> Vec<Block> {
 fn item(document: &Document, child: Child, place: Place) -> Row {
     let label = Pointer(&child.pointer).split().map(|(_, token)| token).unwrap_or_default();
     let field = Arc::new(child.field);
-    let mut cells = match &field.kind {
-        Kind::Object | Kind::Tagged { .. } if place.value.is_some_and(|value| !value.is_null()) => {
+    let mut cells = match field.kind.is_object() && place.value.is_some_and(|value| !value.is_null()) {
+        true => {
             let inner = field::below(place, &child.pointer).into_iter();
             inner.fold(Vec::new(), |row, (child, place)| {
                 joined(row, cells(document, (&child.name, &child.pointer), &Arc::new(child.field), place, true))
             })
         }
-        _ => cells(document, (&child.name, &child.pointer), &field, place, true),
+        false => cells(document, (&child.name, &child.pointer), &field, place, true),
     };
     cells.extend(
         derived::columns(document, &child.pointer).iter().map(|column| follows(document, &child.pointer, column)),

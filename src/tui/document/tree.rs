@@ -63,10 +63,8 @@ fn below_list(list: Place, pointer: &str, depth: usize, collapsed: &BTreeSet<Str
 }
 
 fn leaf(child: Child, value: &Value, depth: usize) -> TreeRow {
-    let note = match child.field.kind {
-        Kind::Object => String::new(),
-        _ => cell::summary(&child.field, value),
-    };
+    let is_form = child.field.kind == Kind::Object;
+    let note = if is_form { String::new() } else { cell::summary(&child.field, value) };
     TreeRow { pointer: child.pointer, label: plain(&child.name), note, depth, collapsed: None }
 }
 
@@ -103,10 +101,7 @@ fn first_item(document: &Document) -> Option<String> {
 /// such a layer has no named items, or if there is no layer.
 pub fn item_word(document: &Document, pointer: &str) -> Option<&'static str> {
     let layer = Place::of(document.json(), &format!("/layers/{}", layer_of(pointer).unwrap_or(0)))?;
-    let named = |list: Shape| match list.body() {
-        Body::List(item, ..) => item.property(None, "name").is_some(),
-        _ => false,
-    };
+    let named = |list: Shape| matches!(list.body(), Body::List(item, ..) if item.property(None, "name").is_some());
     let lists = layer.shape.properties(layer.value);
     lists.into_iter().find(|(_, shape)| named(*shape)).map(|(name, _)| name.trim_end_matches('s'))
 }

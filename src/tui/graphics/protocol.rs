@@ -80,7 +80,9 @@ impl Graphics {
     pub fn dots_a_cell(&self, protocol: Protocol) -> (usize, usize) {
         match protocol {
             Protocol::Blocks => (1, 2),
-            _ => (self.cell.0.max(1).into(), self.cell.1.max(1).into()),
+            Protocol::Kitty | Protocol::Iterm2 | Protocol::Sixel => {
+                (self.cell.0.max(1).into(), self.cell.1.max(1).into())
+            }
         }
     }
 

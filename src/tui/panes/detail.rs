@@ -49,10 +49,6 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) {
 
 /// The help for a cell: if it is a choice, for its present word.
 fn help(cell: &Cell) -> &'static str {
-    let all = match &cell.field.kind {
-        Kind::Choice(all) | Kind::Tagged { variants: all, .. } => all.as_slice(),
-        _ => &[],
-    };
-    let word = all.iter().find(|one| one.name == cell.text && !one.help.is_empty());
+    let word = cell.field.kind.words().iter().find(|one| one.name == cell.text && !one.help.is_empty());
     word.map_or(cell.field.help, |one| one.help)
 }

@@ -32,7 +32,7 @@ fn place(document: &Document, pointer: &str) -> Option<(Place, Point)> {
     if is_pair(&field, ["x", "y"]) {
         return read(document, pointer).map(|at| (Place::Pair(pointer.into()), at));
     }
-    if !matches!(field.kind, Kind::Object | Kind::Tagged { .. }) {
+    if !field.kind.is_object() {
         return None;
     }
     let children = field::children(document, pointer);
@@ -124,7 +124,7 @@ pub fn add_here(state: &State) -> Result<(Edit, String), String> {
     let mut inner = None;
     for pointer in Pointer(&focused).upward() {
         let after = inner.replace(pointer).and_then(|child: &str| child[pointer.len() + 1..].parse::<usize>().ok());
-        let is_list = field::field(document, pointer).is_some_and(|field| matches!(field.kind, Kind::List(_)));
+        let is_list = field::field(document, pointer).is_some_and(|field| field.kind.is_list());
         let lists = match is_list {
             true => vec![pointer.to_string()],
             false => lists(document, pointer),
@@ -141,9 +141,9 @@ pub fn add_here(state: &State) -> Result<(Edit, String), String> {
 }
 
 /// The lists directly inside the node at `pointer`.
-fn lists(document: &Document, pointer: &str) -> Vec<String> {
+pub fn lists(document: &Document, pointer: &str) -> Vec<String> {
     let children = field::children(document, pointer).into_iter();
-    children.filter(|child| matches!(child.field.kind, Kind::List(_))).map(|child| child.pointer).collect()
+    children.filter(|child| child.field.kind.is_list()).map(|child| child.pointer).collect()
 }
 
 fn add_to(state: &State, list: &str, index: usize) -> Option<(Edit, String)> {

@@ -29,7 +29,7 @@ fn to_world(state: &State, document: &Document, pointer: &str) -> DAffine3 {
 pub fn place(state: &State, document: &Document, pointer: &str) -> Option<Place> {
     let (layer, _) = field::layer_of(document, pointer)?;
     let in_space = layer.kind().space == Space::World;
-    let is_object = matches!(field::field(document, pointer)?.kind, Kind::Object | Kind::Tagged { .. });
+    let is_object = field::field(document, pointer)?.kind.is_object();
     let children = if in_space && is_object { field::children(document, pointer) } else { Vec::new() };
     let child = children.into_iter().find(|child| is_place(&child.field))?;
     let at: [f64; 3] = serde_json::from_value(field::value(document, &child.pointer)?).ok()?;

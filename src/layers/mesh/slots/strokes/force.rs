@@ -11,6 +11,7 @@ use serde_json::{Map, Value};
 use super::marks::Set;
 use super::model::{Anchor, Force, Mark};
 use super::styles::Style;
+use crate::base::number;
 use crate::base::pointer::{self, Pointer};
 
 /// The fields that null clears; null in any other is as if nothing were written.
@@ -129,19 +130,19 @@ pub fn whole(force: &Force) -> Value {
     if let Value::Object(fields) = &mut whole {
         fields.retain(|_, value| !value.is_null());
     }
-    short(&mut whole);
+    tidy(&mut whole);
     whole
 }
 
-/// Writes whole numbers as such.
-fn short(value: &mut Value) {
+/// Writes numbers as a person does.
+fn tidy(value: &mut Value) {
     match value {
         Value::Number(number) => {
-            let whole = number.as_f64().filter(|number| number.fract() == 0.0 && number.abs() < 1e9);
-            whole.into_iter().for_each(|number| *value = (number as i64).into());
+            let number = number.as_f64();
+            number.into_iter().for_each(|number| *value = number::json(number));
         }
-        Value::Array(items) => items.iter_mut().for_each(short),
-        Value::Object(fields) => fields.values_mut().for_each(short),
+        Value::Array(items) => items.iter_mut().for_each(tidy),
+        Value::Object(fields) => fields.values_mut().for_each(tidy),
         Value::Null | Value::Bool(_) | Value::String(_) => {}
     }
 }

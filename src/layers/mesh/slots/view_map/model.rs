@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::base::geometry::{Xy, Xyz};
+use crate::layers::parts::shots::Feeds;
 
 /// The most views.
 pub const MOST_VIEWS: usize = 256;
@@ -117,19 +118,6 @@ pub struct View {
     /// Whether it counts at all.
     #[serde(default = "yes")]
     pub active: bool,
-}
-
-/// What a view feeds.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Feeds {
-    /// The base coat and what depends on the view: a photograph.
-    #[default]
-    Both,
-    /// The base coat, which is seen from everywhere.
-    Independent,
-    /// What is seen only near its camera.
-    Dependent,
 }
 
 /// Where a picture is seen from, in the model's coordinates: by `position`, or by `matrix` and `focal`.

@@ -11,8 +11,8 @@ use crate::layers::mesh::pose::Placed;
 use crate::layers::parts::shots::Put;
 use crate::layers::space::eye::Ray;
 
-/// Degrees and lengths are written in so many parts of one.
-const PARTS: (f64, f64) = (10.0, 1e3);
+/// Degrees and lengths are written with so many decimals.
+const DECIMALS: (u32, u32) = (1, 3);
 /// The greatest angle of an extreme point, in degrees.
 const MOST: f64 = 170.0;
 
@@ -27,25 +27,25 @@ pub fn put(map: &Map, number: usize, put: Put, ray: &Ray, placed: &Placed) -> Re
     let place = met(view, placed, ray);
     match (put, &view.extremes) {
         (Put::Blend, _) => {
-            let written = |at: DVec3| at.to_array().map(|part| rounded(part, PARTS.1));
+            let written = |at: DVec3| at.to_array().map(|part| rounded(part, DECIMALS.1));
             Ok(("/blend/points".into(), json!({ "position": written(place), "target": written(view.target) })))
         }
         (Put::Nothing, _) | (Put::Extreme, Extremes::Points(_)) => {
-            let [right, up] = degrees(view, place).map(|angle| rounded(angle.clamp(-MOST, MOST), PARTS.0));
+            let [right, up] = degrees(view, place).map(|angle| rounded(angle.clamp(-MOST, MOST), DECIMALS.0));
             Ok((format!("/views/{number}/extremes/points"), json!([right, up])))
         }
         (Put::Extreme, Extremes::Auto(reach) | Extremes::Cone(reach)) => {
             // A ring where it is gone now.
             let far = (2.0 * atan(*reach)).to_degrees().min(MOST);
-            let [most, least] = [far, -far].map(|angle| rounded(angle, PARTS.0));
+            let [most, least] = [far, -far].map(|angle| rounded(angle, DECIMALS.0));
             let ring = json!([[most, 0], [0, most], [least, 0], [0, least]]);
             Ok((format!("/views/{number}/extremes"), json!({ "kind": "points", "points": ring })))
         }
     }
 }
 
-fn rounded(value: f64, parts: f64) -> Value {
-    number::json((value * parts).round() / parts)
+fn rounded(value: f64, decimals: u32) -> Value {
+    number::json(number::rounded(value, decimals))
 }
 
 /// Where a ray first meets the sphere; where it passes by, the place of the sphere that is nearest to it.

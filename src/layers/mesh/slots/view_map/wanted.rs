@@ -8,7 +8,7 @@ use super::atlas::By;
 use super::camera::{Camera, nearest_turn};
 use super::entries::Reach;
 use super::map::Wanted;
-use super::model::{self, Atlas, Feeds, ViewCamera, ViewMap};
+use super::model::{self, Atlas, ViewCamera, ViewMap};
 use super::paint::Paint;
 use super::view::{Extremes, Fade, View, nearest_on_axis};
 use crate::base::color;
@@ -18,6 +18,7 @@ use crate::base::picture::Picture;
 use crate::base::pixels::decode;
 use crate::base::problem::Problem;
 use crate::layers::parts::materials::Materials;
+use crate::layers::parts::shots::Feeds;
 use crate::layers::parts::shots::misshapen;
 use crate::layers::space::eye::Eye;
 

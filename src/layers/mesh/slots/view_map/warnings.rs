@@ -7,11 +7,12 @@ use glam::DVec3;
 use super::atlas::{self, Atlas};
 use super::cells::{Cells, Layer};
 use super::map::Map;
-use super::model::{Extremes, Feeds, View, ViewMap};
+use super::model::{Extremes, View, ViewMap};
 use super::report::{self, OfView};
 use crate::base::maths::{acos, atan2};
 use crate::base::mesh::Mesh;
 use crate::base::problem::Problem;
+use crate::layers::parts::shots::Feeds;
 
 /// The share of a view that may be finer than the finest layer.
 const MOST_BEYOND: f64 = 0.25;
