@@ -53,3 +53,29 @@ fn seeds_and_what_is_like_them_hold() {
         run.unwrap_or_else(|failure| panic!("{name}: {failure}"));
     }
 }
+
+#[test]
+fn every_check_is_a_fuzz_target() {
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("fuzz");
+    let names = |folder: PathBuf| {
+        let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+        let mut names: Vec<String> =
+            entries.map(|path| path.file_stem().unwrap().to_str().unwrap().to_owned()).collect();
+        names.sort();
+        names
+    };
+    let mut checked: Vec<String> = checks::CHECKS.iter().map(|(name, _)| (*name).to_owned()).collect();
+    checked.sort();
+    assert_eq!(names(folder.join("fuzz_targets")), checked, "the files of fuzz_targets");
+    assert_eq!(names(folder.join("seeds")), checked, "the folders of seeds");
+    let manifest = std::fs::read_to_string(folder.join("Cargo.toml")).unwrap();
+    let bins = manifest.split("[[bin]]").skip(1);
+    let field = |bin: &str, field: &str| {
+        let value = bin.lines().find_map(|line| line.strip_prefix(field)?.strip_prefix(" = "));
+        value.unwrap_or_default().trim_matches('"').to_owned()
+    };
+    let mut listed: Vec<(String, String)> = bins.map(|bin| (field(bin, "name"), field(bin, "path"))).collect();
+    listed.sort();
+    let expected = checked.iter().map(|name| (name.clone(), format!("fuzz_targets/{name}.rs")));
+    assert_eq!(listed, expected.collect::<Vec<_>>(), "the programs of Cargo.toml");
+}

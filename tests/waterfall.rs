@@ -16,7 +16,7 @@ use plica::layers::waterfall::draw::{Canvas, draw};
 use plica::layers::waterfall::frame::places;
 use plica::layers::waterfall::model::{Between, Tangents};
 use plica::layers::waterfall::splat::{mix, splats};
-use plica::layers::waterfall::sprites::{Place, Source};
+use plica::layers::waterfall::sprites::{KeyPlace, Source};
 use plica::layers::waterfall::synth::Synth as Own;
 use plica::render::{Synth, cpu, synth};
 use plica::scene::Scene;
@@ -106,7 +106,7 @@ fn w7_keys_left_out_are_made_again_no_worse_than_by_a_fade() {
         let between = Between { tangents, noise: 0.0, ..Between::default() };
         let (mut sum, mut out, side) = (0.0, Vec::new(), own.pictures.side);
         for (track, of) in own.pictures.tracks.iter().enumerate() {
-            let even: Vec<Place> = (0..of.keys.len()).step_by(2).map(|key| (track, key)).collect();
+            let even: Vec<KeyPlace> = (0..of.keys.len()).step_by(2).map(|key| (track, key)).collect();
             for i in 0..even.len() - 1 {
                 let mix = mix(&between, &even, (i, 0.5), |_| DVec2::Y);
                 texels((&own.pictures, &own.residues), &mix, 0, 0..side, &mut out);

@@ -9,7 +9,7 @@ use super::still;
 use crate::base::error::{Error, Result};
 use crate::files::draft::DraftFolder;
 use crate::files::lines;
-use crate::files::outputs::FolderPlace;
+use crate::files::outputs::ClearedFolder;
 use crate::layers::parts::album::Album;
 use crate::render::cpu;
 
@@ -21,7 +21,7 @@ const LISTING: &str = "sprites.json";
 ///
 /// # Errors
 /// The folder cannot be written.
-pub fn write(album: &Album, place: &FolderPlace) -> Result<Vec<String>> {
+pub fn write(album: &Album, place: &ClearedFolder) -> Result<Vec<String>> {
     let draft = DraftFolder::create(place)?;
     let mut names = Vec::new();
     for (name, picture) in &album.pictures {

@@ -9,12 +9,12 @@ use super::{floats, still};
 use crate::base::error::{Error, Result};
 use crate::base::pixels::{Frame, Linear};
 use crate::files::draft::DraftFile;
-use crate::files::outputs::{self, Guard, Kind, Place};
+use crate::files::outputs::{self, Cleared, Guard, Kind};
 use crate::files::write;
 
 /// The files of the frames of a pass, by their numbers.
 pub struct Files {
-    places: BTreeMap<u64, Place>,
+    places: BTreeMap<u64, Cleared>,
     kind: Kind,
 }
 
@@ -59,7 +59,7 @@ impl Files {
 
     /// Where the files are.
     pub fn paths(&self) -> impl Iterator<Item = &Path> {
-        self.places.values().map(Place::path)
+        self.places.values().map(Cleared::path)
     }
 
     /// Writes the frame of this number, with `alpha` or without; a PNG has the `view` of it.

@@ -6,7 +6,7 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::PathBuf;
 
-use super::outputs::{FolderPlace, Place};
+use super::outputs::{Cleared, ClearedFolder};
 use super::temporary::{self, Temporary};
 use super::write::{self, Atomic};
 use crate::base::error::{Error, Result};
@@ -23,7 +23,7 @@ pub enum DraftFile {
 
 impl DraftFile {
     /// Begins a file for `place`. A link is followed; the folder must exist.
-    pub fn create(place: &Place) -> Result<Self> {
+    pub fn create(place: &Cleared) -> Result<Self> {
         let path = place.path();
         if !fs::metadata(path).is_ok_and(|m| !m.is_file() && !m.is_dir()) {
             return Ok(DraftFile::Whole(BufWriter::with_capacity(1 << 16, Atomic::create(path)?), path.to_path_buf()));
@@ -77,7 +77,7 @@ impl Seek for DraftFile {
 ///
 /// # Errors
 /// As [`Atomic::create`].
-pub fn for_program(place: &Place) -> Result<Atomic> {
+pub fn for_program(place: &Cleared) -> Result<Atomic> {
     Atomic::create(place.path())
 }
 
@@ -94,7 +94,7 @@ pub struct DraftFolder {
 
 impl DraftFolder {
     /// Begins a set of files for the folder at `place`, which need not exist; its parent must.
-    pub fn create(place: &FolderPlace) -> Result<Self> {
+    pub fn create(place: &ClearedFolder) -> Result<Self> {
         let path = place.path();
         let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
         if target.exists() && !target.is_dir() {

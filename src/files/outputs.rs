@@ -1,4 +1,4 @@
-//! Everything that a command writes goes through here: [`Guard`] gives out the [`Place`]s for drafts. Nothing that an
+//! Everything that a command writes goes through here: [`Guard`] gives out the [`Cleared`]s for drafts. Nothing that an
 //! open scene reads is ever replaced, whatever link or spelling leads to it; other files only by the same kind of file,
 //! or if forced. All of this is decided before work begins.
 
@@ -85,9 +85,9 @@ impl Kind {
 
 /// A file that may be written: the guard has checked it.
 #[derive(Clone, Debug)]
-pub struct Place(PathBuf);
+pub struct Cleared(PathBuf);
 
-impl Place {
+impl Cleared {
     /// Where it is.
     pub fn path(&self) -> &Path {
         &self.0
@@ -96,13 +96,13 @@ impl Place {
 
 /// A folder whose files may be written: existing files with the same names are from an earlier run.
 #[derive(Clone, Debug)]
-pub struct FolderPlace {
+pub struct ClearedFolder {
     path: PathBuf,
     /// The files of the earlier output.
     pub earlier: BTreeSet<String>,
 }
 
-impl FolderPlace {
+impl ClearedFolder {
     /// Where it is.
     pub fn path(&self) -> &Path {
         &self.path
@@ -187,7 +187,7 @@ impl Guard {
     ///
     /// # Errors
     /// If the file must not be replaced, or is of another kind and not forced.
-    pub fn file(&mut self, path: &Path, kind: Kind) -> Result<Place> {
+    pub fn file(&mut self, path: &Path, kind: Kind) -> Result<Cleared> {
         let place = self.one(path, kind)?;
         self.clear(disk::folder_of(path));
         Ok(place)
@@ -197,15 +197,15 @@ impl Guard {
     ///
     /// # Errors
     /// As [`Guard::file`].
-    pub fn files(&mut self, folder: &Path, names: &[String], kind: Kind) -> Result<Vec<Place>> {
+    pub fn files(&mut self, folder: &Path, names: &[String], kind: Kind) -> Result<Vec<Cleared>> {
         let places = names.iter().map(|name| self.one(&folder.join(name), kind)).collect::<Result<_>>()?;
         self.clear(folder);
         Ok(places)
     }
 
-    fn one(&self, path: &Path, kind: Kind) -> Result<Place> {
+    fn one(&self, path: &Path, kind: Kind) -> Result<Cleared> {
         self.spare(path)?;
-        let place = Place(path.to_owned());
+        let place = Cleared(path.to_owned());
         let Ok(found) = fs::metadata(path) else { return Ok(place) };
         if self.force || !found.is_file() || found.len() == 0 {
             return Ok(place);
@@ -227,7 +227,7 @@ impl Guard {
         path: &Path,
         may_write: &dyn Fn(&str) -> bool,
         earlier: BTreeSet<String>,
-    ) -> Result<FolderPlace> {
+    ) -> Result<ClearedFolder> {
         self.spare(path)?;
         for entry in fs::read_dir(path).into_iter().flatten().flatten() {
             let name = entry.file_name().to_string_lossy().into_owned();
@@ -241,7 +241,7 @@ impl Guard {
         }
         self.clear(path);
         self.clear(disk::folder_of(path));
-        Ok(FolderPlace { path: path.to_owned(), earlier })
+        Ok(ClearedFolder { path: path.to_owned(), earlier })
     }
 
     fn clear(&mut self, folder: &Path) {

@@ -16,7 +16,7 @@ use super::parts::marks::{Mark, View};
 use super::parts::materials::Materials;
 use super::parts::moment::{CENTER, Columns, Moment};
 use super::parts::pass::{Pass, Which};
-use super::parts::picking::{Picking, Sight};
+use super::parts::picking::{Picking, Subject};
 use super::parts::plan::Plan;
 use super::parts::readout::{Fact, Under, VectorField};
 use super::parts::shots::{Painted, Put, Taken};
@@ -189,7 +189,7 @@ pub trait Ready: Any + Debug + Send + Sync {
     }
 
     /// What there is to see of the clip from which its pictures are picked; `None` if there is nothing.
-    fn picking(&self, _sight: Sight) -> Option<Picking> {
+    fn picking(&self, _sight: Subject) -> Option<Picking> {
         None
     }
 

@@ -3,7 +3,7 @@
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::made::Kept;
+use super::made::LastMade;
 use super::reduce::reduced;
 use super::stage::{Group, Stage};
 use super::{Synth, cpu};
@@ -28,7 +28,7 @@ impl Beside {
         let size = (ways.iter().map(|way| way.size.0).sum(), ways.first().map_or(0, |way| way.size.1));
         let stop = ways.iter().find_map(|way| way.stop.clone());
         let stage = Arc::new(Stage { groups: vec![Group::Plane(0)], ..Stage::default() });
-        Synth { size, layers: vec![Beside::of(ways)], stage, stop, kept: Kept::default() }
+        Synth { size, layers: vec![Beside::of(ways)], stage, stop, kept: LastMade::default() }
     }
 
     fn of(ways: Vec<Synth>) -> Arc<dyn Ready> {

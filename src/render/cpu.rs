@@ -6,7 +6,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::Synth;
-use super::made::{Kept, Wholes};
+use super::made::{LastMade, Wholes};
 use super::stage::{Group, Stage};
 use super::whole::Surfaced;
 use crate::base::pixels::{Frame, Grid, Linear, Rgba, encode_all, over};
@@ -208,7 +208,7 @@ fn encode_in(light: &[Rgba], out: &mut [[u8; 4]]) {
 /// The pixels of the frame at `scene_time` in these columns and rows (ascending, within the frame). No others are
 /// computed, but of layers that are made whole, so that a small view of a large picture is cheap.
 pub fn lattice(synth: &Synth, scene_time: f64, columns: &[usize], rows: &[usize]) -> Linear {
-    let at = (scene_time, &*Kept::frame(synth, scene_time));
+    let at = (scene_time, &*LastMade::frame(synth, scene_time));
     mean_lines(std::slice::from_ref(synth), at, Columns::Some(columns), rows, &|_| ())
 }
 

@@ -25,7 +25,7 @@ pub struct Synth {
     /// Once it is set, frames are given up, with anything in them.
     pub stop: Option<Arc<AtomicBool>>,
     /// What was made whole of the last frame of which some pixels were wanted.
-    pub kept: Kept,
+    pub kept: LastMade,
 }
 
 impl Synth {
@@ -117,16 +117,16 @@ pub struct Wholes {
 
 /// What was made whole last, for those who want some pixels after others: of a frame, and of a pass.
 #[derive(Clone, Debug, Default)]
-pub struct Kept {
+pub struct LastMade {
     pub(super) frame: Slot<Wholes>,
-    pub(super) pass: Slot<Drawn>,
+    pub(super) pass: Slot<DrawnPass>,
 }
 
 pub(super) type Slot<T> = Arc<Mutex<Option<(MadeOf, Arc<T>)>>>;
 
 /// What of a pass is drawn on surfaces.
 #[derive(Debug)]
-pub struct Drawn {
+pub struct DrawnPass {
     pub(super) pass: Pass,
     pub(super) of: Option<String>,
     /// One for each group, all its pixels; `None` where nothing is drawn.

@@ -36,7 +36,7 @@ mod whole;
 pub use made::Synth;
 pub use whole::bytes as stroke_bytes;
 
-use made::Kept;
+use made::LastMade;
 use stage::Stage;
 
 /// Prepares a scene for rendering at any time. What it has in common with `previous` is reused.
@@ -100,7 +100,7 @@ fn synth_at(scene: &Scene, making: Making, previous: Option<&Synth>) -> Result<S
     };
     let layers = scene.layers.iter().enumerate().map(ready).collect::<Result<Vec<_>, _>>()?;
     let (size, stage, stop) = (frame_size(scene, materials), Arc::new(Stage::of(scene)), materials.stop.clone());
-    Ok(Synth { size, layers, stage, stop, kept: Kept::default() })
+    Ok(Synth { size, layers, stage, stop, kept: LastMade::default() })
 }
 
 /// The layers that others show as textures. What they have in common with `previous` is reused.

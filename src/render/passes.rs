@@ -167,7 +167,7 @@ fn lines(which: Which, synth: &Synth, time: f64, columns: Columns, rows: &[usize
     let stills: Vec<Box<dyn Still + '_>> = synth.layers.iter().map(|layer| layer.at(&moment)).collect();
     // What is drawn on surfaces, for passes that not all layers in space have.
     let own = PASSES.iter().all(|common| *common != pass);
-    let drawn = own.then(|| made::Kept::pass(synth, time, which));
+    let drawn = own.then(|| made::LastMade::pass(synth, time, which));
     let mut picture = Linear::filled(width, rows.len(), [0.0; 4]);
     let lines = picture.cells_mut().par_chunks_mut(width.max(1)).zip(rows.par_iter());
     lines.for_each(|(out, &y)| {

@@ -6,14 +6,14 @@ use std::sync::{Arc, PoisonError};
 
 use rayon::prelude::*;
 
-use super::made::{Drawn, Kept, MadeOf, Slot, Synth, Whole, Wholes};
+use super::made::{DrawnPass, LastMade, MadeOf, Slot, Synth, Whole, Wholes};
 use super::stage::Group;
 use crate::base::pixels::Rgba;
 use crate::layers::parts::moment::{Columns, Moment};
 use crate::layers::parts::pass::{COLOR, Which};
 use crate::layers::ready::{Still, Surfaces};
 
-impl Kept {
+impl LastMade {
     /// What is made whole of one frame: as it is kept, or made now.
     pub fn frame(synth: &Synth, scene_time: f64) -> Arc<Wholes> {
         let make = || Wholes::new(std::slice::from_ref(synth), scene_time);
@@ -21,13 +21,13 @@ impl Kept {
     }
 
     /// The same of a pass.
-    pub fn pass(synth: &Synth, scene_time: f64, which: Which) -> Arc<Drawn> {
+    pub fn pass(synth: &Synth, scene_time: f64, which: Which) -> Arc<DrawnPass> {
         let make = || {
             let moment = synth.moment(scene_time);
             let groups = synth.stage.groups.iter().map(|group| pass(synth, group, &moment, which)).collect();
-            Drawn { pass: *which.pass, of: which.of.map(str::to_owned), groups }
+            DrawnPass { pass: *which.pass, of: which.of.map(str::to_owned), groups }
         };
-        let is_same = |drawn: &Drawn| drawn.pass == *which.pass && drawn.of.as_deref() == which.of;
+        let is_same = |drawn: &DrawnPass| drawn.pass == *which.pass && drawn.of.as_deref() == which.of;
         kept(&synth.kept.pass, (synth, scene_time), is_same, make)
     }
 }
@@ -201,12 +201,12 @@ mod tests {
     #[test]
     fn a_frame_is_made_once_for_all_that_want_pixels_of_it() {
         let synth = synth(None);
-        let first = Kept::frame(&synth, 0.25);
-        assert!(Arc::ptr_eq(&first, &Kept::frame(&synth.clone(), 0.25)));
-        assert!(!Arc::ptr_eq(&first, &Kept::frame(&synth, 0.5)), "another time");
-        let last = Kept::frame(&synth, 0.5);
+        let first = LastMade::frame(&synth, 0.25);
+        assert!(Arc::ptr_eq(&first, &LastMade::frame(&synth.clone(), 0.25)));
+        assert!(!Arc::ptr_eq(&first, &LastMade::frame(&synth, 0.5)), "another time");
+        let last = LastMade::frame(&synth, 0.5);
         let other = Synth { stage: Arc::new(Stage { camera: None, ..(*synth.stage).clone() }), ..synth.clone() };
-        assert!(!Arc::ptr_eq(&last, &Kept::frame(&other, 0.5)), "another camera");
+        assert!(!Arc::ptr_eq(&last, &LastMade::frame(&other, 0.5)), "another camera");
         assert_eq!(cpu::lattice(&synth, 0.5, &[9, 20], &[11]).cells()[1], *cpu::linear(&synth, 0.5).get(20, 11));
     }
 
@@ -215,7 +215,7 @@ mod tests {
         let synth = synth(None);
         let [ink, tone] =
             ["ink", "tone"].map(|name| crate::render::passes::all().find(|pass| pass.name == name).unwrap());
-        let of = |pass, time| Kept::pass(&synth, time, Which { pass, of: None });
+        let of = |pass, time| LastMade::pass(&synth, time, Which { pass, of: None });
         let first = of(ink, 0.25);
         assert!(Arc::ptr_eq(&first, &of(ink, 0.25)) && first.groups[0].is_some());
         assert!(!Arc::ptr_eq(&of(ink, 0.25), &of(tone, 0.25)) && !Arc::ptr_eq(&of(tone, 0.5), &of(tone, 0.25)));
@@ -225,14 +225,14 @@ mod tests {
     fn what_is_stopped_is_neither_drawn_nor_kept() {
         let stop = Arc::new(AtomicBool::new(true));
         let synth = synth(Some(stop.clone()));
-        let first = Kept::frame(&synth, 0.0);
+        let first = LastMade::frame(&synth, 0.0);
         let paper = |wholes: &Wholes| {
             let colors = &wholes.groups[0].as_ref().unwrap().color;
             // Without noise only outlines are drawn.
             colors.iter().filter(|color| color[3] == 1.0 && color[0] > 0.8).count()
         };
         stop.store(false, Ordering::Relaxed);
-        let second = Kept::frame(&synth, 0.0);
+        let second = LastMade::frame(&synth, 0.0);
         assert!(!Arc::ptr_eq(&first, &second));
         assert_ne!(paper(&first), paper(&second));
     }

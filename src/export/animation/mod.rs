@@ -7,7 +7,7 @@ use std::path::Path;
 use crate::base::error::{Error, Result};
 use crate::export::numbered::{PICTURES, Pattern};
 use crate::files::draft::DraftFile;
-use crate::files::outputs::{Guard, Place};
+use crate::files::outputs::{Cleared, Guard};
 
 pub mod formats;
 pub mod matrix;
@@ -26,7 +26,7 @@ pub struct Target(Goal);
 
 enum Goal {
     Sequence(sequence::Places),
-    File(Place, &'static Format),
+    File(Cleared, &'static Format),
     Stream(Box<dyn Write + Send>, &'static Format, Begin),
 }
 
@@ -90,7 +90,7 @@ impl Target {
     }
 
     /// The files that it makes.
-    pub fn files(&self) -> Vec<Place> {
+    pub fn files(&self) -> Vec<Cleared> {
         match &self.0 {
             Goal::Sequence(places) => places.all(),
             Goal::File(place, _) => vec![place.clone()],

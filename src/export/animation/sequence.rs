@@ -11,11 +11,11 @@ use crate::base::pixels::Frame;
 use crate::export::numbered::Pattern;
 use crate::export::still;
 use crate::files::draft::DraftFile;
-use crate::files::outputs::{self, Guard, Place};
+use crate::files::outputs::{self, Cleared, Guard};
 use crate::files::write;
 
 /// The files of a sequence, by their numbers.
-pub struct Places(BTreeMap<u64, Place>);
+pub struct Places(BTreeMap<u64, Cleared>);
 
 impl Places {
     /// The files for frames of these numbers.
@@ -29,7 +29,7 @@ impl Places {
     }
 
     /// Every file, by number.
-    pub fn all(&self) -> Vec<Place> {
+    pub fn all(&self) -> Vec<Cleared> {
         self.0.values().cloned().collect()
     }
 
@@ -76,7 +76,7 @@ impl Sequence {
     }
 }
 
-fn put(place: &Place, frame: &Frame) -> Result<()> {
+fn put(place: &Cleared, frame: &Frame) -> Result<()> {
     let failed = |error: &(dyn std::error::Error + 'static)| write::failed(place.path().display(), error);
     let bytes = still::frame(frame).map_err(|e| failed(&e))?;
     let mut draft = DraftFile::create(place)?;

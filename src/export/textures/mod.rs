@@ -10,7 +10,7 @@ use crate::base::error::{Error, Result};
 use crate::base::pixels::{Frame, Linear};
 use crate::export::{floats, still};
 use crate::files::draft::DraftFolder;
-use crate::files::outputs::FolderPlace;
+use crate::files::outputs::ClearedFolder;
 use crate::layers::KINDS;
 use crate::layers::parts::bundle::{FileNote, FloatNote, Halves, HalvesNote, PictureNote, Sink, Texture, TextureNote};
 use crate::layers::technique::Bundled;
@@ -81,7 +81,7 @@ pub fn write(
     scene: &Scene,
     synth: &Synth,
     forms: Forms,
-    place: &FolderPlace,
+    place: &ClearedFolder,
     step: &mut dyn FnMut(u64, u64) -> Result<()>,
 ) -> Result<Written> {
     let mut techniques = Map::new();

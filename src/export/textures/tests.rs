@@ -47,7 +47,7 @@ fn manifest(dir: &Path) -> Value {
     serde_json::from_slice(&std::fs::read(dir.join("manifest.json")).unwrap()).unwrap()
 }
 
-fn place(dir: &Path) -> FolderPlace {
+fn place(dir: &Path) -> ClearedFolder {
     Guard::new(false).folder(dir, &|_| true, earlier(dir)).unwrap()
 }
 

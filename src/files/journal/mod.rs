@@ -207,7 +207,7 @@ impl Candidate {
     ///
     /// # Errors
     /// If it cannot be written. The journal that was found is still there then, and locked: this may be tried again.
-    pub fn open(&mut self, header: &Header, records: usize, revision: u64) -> io::Result<Opened> {
+    pub fn open(&mut self, header: &Header, records: usize, revision: u64) -> io::Result<OpenJournal> {
         let end = match &self.contents {
             None => 0,
             Some(contents) if records == 0 => contents.header_end,
@@ -236,7 +236,7 @@ impl Candidate {
         disk::sync(&self.file)?;
         disk::sync_folder_of(&self.path)?;
         let empty = records == 0;
-        Ok(Opened { journal: self.start(bytes, revision, empty)?, aside: self.aside.clone() })
+        Ok(OpenJournal { journal: self.start(bytes, revision, empty)?, aside: self.aside.clone() })
     }
 
     /// Copies the bytes from `end` on to a separate file.
@@ -282,7 +282,7 @@ impl Candidate {
 
 /// A journal ready to be written.
 #[derive(Debug)]
-pub struct Opened {
+pub struct OpenJournal {
     /// The journal.
     pub journal: Journal,
     /// The file that bytes which were not understood were moved to.

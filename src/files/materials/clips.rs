@@ -9,7 +9,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::named::{Named, frames};
-use super::sources::{Allowed, Place, Sources, decode_picture, problem, still_shown};
+use super::sources::{Allowed, Sources, Whereabouts, decode_picture, problem, still_shown};
 use super::store::{Loaded, Store};
 use crate::base::budget::Share;
 use crate::base::clip::Clip;
@@ -129,7 +129,7 @@ impl Sources<'_> {
 
     /// That a clip of so many frames ends before one that is missing, while later ones are there.
     fn gap(&self, clip: &scene::Clip, count: u64, named: &Named) -> Option<Problem> {
-        let Place::Beside(scene_path) = self.place else { return None };
+        let Whereabouts::Beside(scene_path) = self.place else { return None };
         let frames = clip.frames().ok().filter(|_| clip.count.is_none())?;
         let first = paths::beside(scene_path, &frames.path(0));
         let names = std::fs::read_dir(disk::folder_of(&first)).ok()?.flatten().map(|entry| entry.file_name());
@@ -144,8 +144,8 @@ impl Sources<'_> {
         match error {
             Error::Failed { place, what, .. } if what.ends_with("is a folder, not a file") => {
                 let found = match self.place {
-                    Place::Beside(scene_path) => files::clips::find(&paths::beside(scene_path, &clip.path)).ok(),
-                    Place::Copies(_) => None,
+                    Whereabouts::Beside(scene_path) => files::clips::find(&paths::beside(scene_path, &clip.path)).ok(),
+                    Whereabouts::Copies(_) => None,
                 };
                 let (name, first) = found.map_or(("%04d.png".into(), 0), |found| (found.name, found.first));
                 let from = if first > 0 { format!(", and \"first\": {first}") } else { String::new() };
@@ -158,8 +158,8 @@ impl Sources<'_> {
 
     fn is_there(&self, path: &str) -> bool {
         match self.place {
-            Place::Beside(scene_path) => paths::beside(scene_path, path).exists(),
-            Place::Copies(copies) => copies.contains_key(path),
+            Whereabouts::Beside(scene_path) => paths::beside(scene_path, path).exists(),
+            Whereabouts::Copies(copies) => copies.contains_key(path),
         }
     }
 }

@@ -32,7 +32,7 @@ pub(super) use store::Stamp;
 use clips::Clips;
 use masks::Masked;
 use named::Named;
-use sources::{Allowed, Place, Sources, decode_field, decode_mesh, decode_picture, problem};
+use sources::{Allowed, Sources, Whereabouts, decode_field, decode_mesh, decode_picture, problem};
 use store::Store;
 
 /// What was loaded before, by path, for as long as the scene names it.
@@ -77,7 +77,7 @@ pub fn load(
 /// As [`load`], for an editor, which continues with what can be loaded: also returns the problems, errors first. A file
 /// that cannot be read just now is replaced by its last good version, if that is in the cache.
 pub fn gather(scene_path: &Path, scene: &Scene, options: &Options, cache: &mut Cache) -> (Materials, Vec<Problem>) {
-    Sources { place: Place::Beside(scene_path), options }.gather(scene, cache)
+    Sources { place: Whereabouts::Beside(scene_path), options }.gather(scene, cache)
 }
 
 /// As [`gather`], for a scene on another machine.
@@ -87,7 +87,7 @@ pub fn gather_copies(
     options: &Options,
     cache: &mut Cache,
 ) -> (Materials, Vec<Problem>) {
-    Sources { place: Place::Copies(copies), options }.gather(scene, cache)
+    Sources { place: Whereabouts::Copies(copies), options }.gather(scene, cache)
 }
 
 /// Width and height of every picture that `scene` names, from the headers alone, and which files cannot be read.
@@ -160,7 +160,7 @@ impl Sources<'_> {
     /// Warns of models whose own picture is not there, where the scene does not name that itself.
     fn check_pictures(&self, scene: &Scene, meshes: &BTreeMap<String, Arc<Mesh>>, problems: &mut Vec<Problem>) {
         // Only what is named goes to other machines.
-        if matches!(self.place, Place::Copies(_)) {
+        if matches!(self.place, Whereabouts::Copies(_)) {
             return;
         }
         for named in named::meshes(scene) {

@@ -25,7 +25,7 @@ use crate::files::{Limits, Options, mesh, paths, picture};
 pub type Copies = BTreeMap<String, std::result::Result<PathBuf, String>>;
 
 /// Where the files are.
-pub(super) enum Place<'a> {
+pub(super) enum Whereabouts<'a> {
     /// Beside the scene, or wherever its paths lead.
     Beside(&'a Path),
     /// On this machine, while the scene is on another.
@@ -34,7 +34,7 @@ pub(super) enum Place<'a> {
 
 /// The files of a scene.
 pub(super) struct Sources<'a> {
-    pub(super) place: Place<'a>,
+    pub(super) place: Whereabouts<'a>,
     pub(super) options: &'a Options,
 }
 
@@ -43,18 +43,18 @@ impl Sources<'_> {
     pub(super) fn key(&self, path: &str) -> PathBuf {
         match self.place {
             // Layers of one file are separate pictures.
-            Place::Beside(scene_path) => match paths::layer_of(path) {
+            Whereabouts::Beside(scene_path) => match paths::layer_of(path) {
                 None => paths::beside(scene_path, path),
                 Some(layer) => paths::beside(scene_path, path).join(format!("#{layer}")),
             },
-            Place::Copies(_) => path.into(),
+            Whereabouts::Copies(_) => path.into(),
         }
     }
 
     pub(super) fn open(&self, path: &str) -> Result<File> {
         match self.place {
-            Place::Beside(scene_path) => paths::open(scene_path, path, self.options),
-            Place::Copies(copies) => match copies.get(path) {
+            Whereabouts::Beside(scene_path) => paths::open(scene_path, path, self.options),
+            Whereabouts::Copies(copies) => match copies.get(path) {
                 Some(Ok(copy)) => paths::open_named(copy),
                 Some(Err(why)) => Err(Error::at(path, why)),
                 None => Err(Error::at(path, "is not here yet")),

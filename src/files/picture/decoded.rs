@@ -14,7 +14,7 @@ pub struct Loaded {
 }
 
 /// A file whose header has been read and is within the limits.
-pub(super) struct Opened {
+pub(super) struct Undecoded {
     /// Width and height as in the file, not turned.
     pub(super) size: (usize, usize),
     /// The orientation by EXIF, 1 to 8.

@@ -10,7 +10,7 @@ use exr::error::Error as ExrError;
 use exr::meta::attribute::SampleType;
 use exr::meta::header::Header;
 
-use super::decoded::{Color, Decoded, Model, Opened, Raw};
+use super::decoded::{Color, Decoded, Model, Raw, Undecoded};
 use super::limits::{self, check_size};
 use crate::base::error::{Error, Result};
 use crate::files::{Limits, paths};
@@ -18,7 +18,7 @@ use crate::files::{Limits, paths};
 type Exr = Reader<BufReader<File>>;
 
 /// Reads the header.
-pub(super) fn open(file: File, place: &str, limits: &Limits) -> Result<Opened> {
+pub(super) fn open(file: File, place: &str, limits: &Limits) -> Result<Undecoded> {
     let reader = reader(file, place)?;
     let chosen = choose(reader.headers(), place, &picture_of)?;
     let size = window(&reader, &chosen);
@@ -31,7 +31,7 @@ pub(super) fn open(file: File, place: &str, limits: &Limits) -> Result<Opened> {
         let samples = samples(reader, &chosen, size, &place)?;
         Ok(Decoded { size, model, samples, color: Color::Untagged, notes: Vec::new() })
     });
-    Ok(Opened { size, orientation: 1, bytes, decode })
+    Ok(Undecoded { size, orientation: 1, bytes, decode })
 }
 
 /// Two channels of an OpenEXR, as vectors are stored; `allow` is asked first for the bytes that this takes.

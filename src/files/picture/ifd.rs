@@ -169,13 +169,13 @@ impl Page {
 }
 
 /// A file with some bytes patched.
-pub(super) struct Told {
+pub(super) struct Patched {
     pub file: File,
     pub at: u64,
     pub changes: Vec<(u64, Vec<u8>)>,
 }
 
-impl Read for Told {
+impl Read for Patched {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         self.file.seek(SeekFrom::Start(self.at))?;
         let read = self.file.read(buffer)?;
@@ -190,7 +190,7 @@ impl Read for Told {
     }
 }
 
-impl Seek for Told {
+impl Seek for Patched {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         self.at = match to {
             SeekFrom::Start(at) => at,

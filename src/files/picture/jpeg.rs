@@ -11,7 +11,7 @@ use zune_core::colorspace::ColorSpace;
 use zune_core::options::DecoderOptions;
 use zune_jpeg::{JpegDecoder, errors::DecodeErrors};
 
-use super::decoded::{Color, Decoded, Model, Opened, Raw};
+use super::decoded::{Color, Decoded, Model, Raw, Undecoded};
 use super::limits;
 use super::{icc, kinds};
 use crate::base::error::{Error, Result};
@@ -19,7 +19,7 @@ use crate::files::Limits;
 use crate::files::limits::within;
 
 /// Reads the header, and checks that the file is complete.
-pub(super) fn open(mut file: File, length: u64, place: &str, limits: &Limits) -> Result<Opened> {
+pub(super) fn open(mut file: File, length: u64, place: &str, limits: &Limits) -> Result<Undecoded> {
     within(place, "is", "bytes long", "memory", length, limits.memory)?;
     let mut input = Vec::new();
     file.read_to_end(&mut input).map_err(|error| limits::reading(place, &error))?;
@@ -46,7 +46,7 @@ pub(super) fn open(mut file: File, length: u64, place: &str, limits: &Limits) ->
     let bytes = length + pixels * (how.out.num_components() as u64 + waiting);
     let place = place.to_owned();
     let decode = Box::new(move || how.decode(&input, size, &place));
-    Ok(Opened { size, orientation, bytes, decode })
+    Ok(Undecoded { size, orientation, bytes, decode })
 }
 
 /// The options are those of the image crate, so that pictures without a profile look as in other programs.

@@ -34,7 +34,7 @@ pub use decoded::Loaded;
 pub(super) use exr::vectors;
 pub(super) use png::words;
 
-use decoded::Opened;
+use decoded::Undecoded;
 use kinds::Kind;
 
 /// Reads the picture at `path` (`a.exr#beauty` is a layer of it, `a.glb#0` a picture in it), within the limits.
@@ -102,7 +102,7 @@ pub fn header(file: File, place: &str, limits: &Limits) -> Result<(usize, usize)
     Ok(upright::size(opened.size, opened.orientation))
 }
 
-fn open(file: File, place: &str, limits: &Limits) -> Result<Opened> {
+fn open(file: File, place: &str, limits: &Limits) -> Result<Undecoded> {
     let failed = |error| Error::at(place, error);
     let mut file = match paths::image_of(place) {
         Some(image) => mesh::embedded(file, place, image, limits)?,

@@ -4,7 +4,7 @@ use std::io::{BufRead, Read, Seek, SeekFrom};
 
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, metadata::Orientation};
 
-use super::decoded::{Color, Decoded, Model, Opened, Raw};
+use super::decoded::{Color, Decoded, Model, Raw, Undecoded};
 use super::kinds;
 use super::limits::{self, BESIDES_PIXELS};
 use crate::base::error::{Error, Result};
@@ -19,7 +19,7 @@ pub(super) fn open(
     format: ImageFormat,
     place: &str,
     limits: &Limits,
-) -> Result<Opened> {
+) -> Result<Undecoded> {
     let mut reader = reader;
     look(&mut reader, format, place)?;
     let mut decoder = decoder(reader, format, place, limits)?;
@@ -36,7 +36,7 @@ pub(super) fn open(
         let color = profile.map_or(Color::Untagged, Color::Icc);
         Ok(Decoded { size, model, samples, color, notes: Vec::new() })
     });
-    Ok(Opened { size, orientation, bytes, decode })
+    Ok(Undecoded { size, orientation, bytes, decode })
 }
 
 /// What the decoders do not tell rightly of the kinds themselves.

@@ -8,7 +8,7 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use image::ImageFormat;
 
 use super::conversion::{Spoken, Transfer};
-use super::decoded::{Color, Decoded, Model, Opened, Raw};
+use super::decoded::{Color, Decoded, Model, Raw, Undecoded};
 use super::{limits, plain};
 use crate::base::error::{Error, Result};
 use crate::files::Limits;
@@ -23,7 +23,7 @@ const READ: [(&[u8; 4], u32); 4] = [(b"cICP", 4), (b"sRGB", 1), (b"gAMA", 4), (b
 const MOST_EXIF: u32 = 1 << 20;
 
 /// Reads the header.
-pub(super) fn open(file: File, place: &str, limits: &Limits) -> Result<Opened> {
+pub(super) fn open(file: File, place: &str, limits: &Limits) -> Result<Undecoded> {
     let chunks = Chunks::of(file).map_err(|error| limits::reading(place, &error))?;
     let (said, has_profile, whole) = (chunks.said.clone(), chunks.has_profile, chunks.whole);
     let opened = plain::open(BufReader::new(chunks), ImageFormat::Png, place, limits)?;
@@ -34,7 +34,7 @@ pub(super) fn open(file: File, place: &str, limits: &Limits) -> Result<Opened> {
         let decoded = (opened.decode)()?;
         Ok(colored(decoded, said, has_profile))
     });
-    Ok(Opened { decode, ..opened })
+    Ok(Undecoded { decode, ..opened })
 }
 
 /// The samples of a PNG with red, green and blue of 16 bits each, as KITTI stores vectors; `allow` is asked first for

@@ -9,17 +9,17 @@ use tiff::decoder::{Decoder, DecodingResult, Limits as TiffLimits};
 use tiff::tags::Tag;
 use tiff::{ColorType, TiffError};
 
-use super::decoded::{Color, Decoded, Model, Opened, Raw};
+use super::decoded::{Color, Decoded, Model, Raw, Undecoded};
 use super::ifd::{
-    self, BITS, COLOR_MAP, COMPRESSION, DNG, EXTRA_SAMPLES, Form, PHOTOMETRIC, PLANES, PROFILE, Page, SAMPLES, SUBFILE,
-    Told,
+    self, BITS, COLOR_MAP, COMPRESSION, DNG, EXTRA_SAMPLES, Form, PHOTOMETRIC, PLANES, PROFILE, Page, Patched, SAMPLES,
+    SUBFILE,
 };
 use super::limits::{self, check_size};
 use super::{jpeg, kinds};
 use crate::base::error::{Error, Result};
 use crate::files::Limits;
 
-type Tiff = Decoder<BufReader<Told>>;
+type Tiff = Decoder<BufReader<Patched>>;
 
 /// The photometric interpretations of raw photographs: a color filter array, or linear sensor data.
 const RAW_PHOTOMETRIC: [u64; 2] = [32803, 34892];
@@ -52,12 +52,12 @@ struct Picked {
 }
 
 /// Reads the header.
-pub(super) fn open(mut file: File, place: &str, limits: &Limits) -> Result<Opened> {
+pub(super) fn open(mut file: File, place: &str, limits: &Limits) -> Result<Undecoded> {
     let (form, pages) = ifd::pages(&mut file).map_err(|error| limits::reading(place, &error))?;
     let page = choose(&mut file, form, &pages, place)?;
     let (about, changes) = about(&mut file, form, page);
     let failed = |error| explain(place, error);
-    let mut decoder = Decoder::new(BufReader::new(Told { file, at: 0, changes })).map_err(failed)?;
+    let mut decoder = Decoder::new(BufReader::new(Patched { file, at: 0, changes })).map_err(failed)?;
     let (width, height) = decoder.dimensions().map_err(failed)?;
     let size = (width as usize, height as usize);
     check_size(place, size, limits)?;
@@ -77,7 +77,7 @@ pub(super) fn open(mut file: File, place: &str, limits: &Limits) -> Result<Opene
     let orientation =
         orientation.and_then(|v| Orientation::from_exif(v.min(255) as u8)).map_or(1, Orientation::to_exif);
     let decode = Box::new(move || decode(decoder, color, size, about, &place));
-    Ok(Opened { size, orientation, bytes, decode })
+    Ok(Undecoded { size, orientation, bytes, decode })
 }
 
 fn tiff_limits(bytes: usize, limits: &Limits) -> TiffLimits {

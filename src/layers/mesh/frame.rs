@@ -10,7 +10,7 @@ use super::added::Added;
 use super::drawing::{Given, ReadyDrawing};
 use super::model::Sides;
 use super::pose::Placed;
-use super::slot::{Place, Reader, StillSurface};
+use super::slot::{Reader, StillSurface, SurfacePoint};
 use super::slots;
 use super::synth::Synth;
 use crate::base::mesh::Mesh;
@@ -21,7 +21,7 @@ use crate::layers::ready::{Still, Surfaces};
 use crate::layers::space::raster::{Hit, NONE, Raster};
 
 /// Where a mesh is in the frame at one time.
-pub struct View<'a> {
+pub struct PosedMesh<'a> {
     mesh: &'a Mesh,
     /// The vertices in the world: where they are, and their normals.
     world: Vec<(DVec3, DVec3)>,
@@ -65,12 +65,12 @@ impl Spot {
     }
 
     /// The place on the surface.
-    pub fn place(&self) -> Place {
-        Place { hit: self.hit, position: self.position, uv: self.uv }
+    pub fn place(&self) -> SurfacePoint {
+        SurfacePoint { hit: self.hit, position: self.position, uv: self.uv }
     }
 }
 
-impl<'a> View<'a> {
+impl<'a> PosedMesh<'a> {
     /// The mesh in a pose, seen at `place` in each pixel.
     pub fn new(mesh: &'a Mesh, sides: Sides, placed: &Placed, place: Vec2, moment: &Moment) -> Self {
         let world = world(mesh, placed);
@@ -78,7 +78,7 @@ impl<'a> View<'a> {
             let seen = world.par_iter().map(|(position, _)| eye.seen(*position)).collect();
             Raster::new(&eye, moment.size_px, place, &mesh.triangles, seen, sides == Sides::Both)
         });
-        View { mesh, world, raster }
+        PosedMesh { mesh, world, raster }
     }
 
     /// Calls `each` with every wanted cell of row `y` that shows the mesh nearer than `depth`, which becomes its depth.
@@ -120,7 +120,7 @@ pub struct Seen<'a> {
     synth: &'a Synth,
     moment: &'a Moment,
     placed: Placed,
-    view: View<'a>,
+    view: PosedMesh<'a>,
     /// Where the light comes from, of length 1, and the share of it that comes from everywhere.
     light: (DVec3, f64),
     surface: Box<dyn StillSurface + 'a>,
@@ -132,7 +132,7 @@ impl<'a> Seen<'a> {
     /// The layer at one time.
     pub fn new(synth: &'a Synth, moment: &'a Moment) -> Self {
         let placed = synth.pose.at(synth.time(moment));
-        let view = View::new(&synth.mesh, synth.sides, &placed, synth.place(moment), moment);
+        let view = PosedMesh::new(&synth.mesh, synth.sides, &placed, synth.place(moment), moment);
         let light = (synth.light.toward(), synth.light.ambient);
         Seen { synth, moment, placed, view, light, surface: synth.surface.at(moment, &placed), alone: OnceLock::new() }
     }

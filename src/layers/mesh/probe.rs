@@ -1,6 +1,6 @@
 //! One pixel of a mesh layer explained.
 
-use super::frame::{Seen, Spot, View};
+use super::frame::{PosedMesh, Seen, Spot};
 use super::model::MeshLayer;
 use super::synth::Synth;
 use crate::base::problem::Problem;
@@ -20,7 +20,7 @@ pub fn probe(
 ) -> Result<ReadOut, Problem> {
     let mesh = making.materials.mesh(&layer.mesh, "/mesh")?;
     let placed = layer.pose.at(moment.t);
-    let view = View::new(&mesh, layer.sides, &placed, making.place, moment);
+    let view = PosedMesh::new(&mesh, layer.sides, &placed, making.place, moment);
     let spot = spot(&view, pixel, moment);
     let mut read = read_out(layer, spot);
     let Some(spot) = spot.filter(|_| layer.strokes.is_some() || layer.surface.slot().explains()) else {
@@ -45,11 +45,11 @@ fn of_strokes(synth: &Synth, (x, y): (usize, usize), moment: &Moment) -> Vec<Ent
 /// The triangle in column `x`, row `y` of what was synthesised.
 pub fn under(synth: &Synth, pixel: (usize, usize), moment: &Moment) -> Option<Under> {
     let placed = synth.pose.at(synth.time(moment));
-    let view = View::new(&synth.mesh, synth.sides, &placed, synth.place, moment);
+    let view = PosedMesh::new(&synth.mesh, synth.sides, &placed, synth.place, moment);
     spot(&view, pixel, moment).map(|spot| Under { triangle: spot.hit.triangle, depth_m: spot.hit.depth })
 }
 
-fn spot(view: &View, (x, y): (usize, usize), moment: &Moment) -> Option<Spot> {
+fn spot(view: &PosedMesh, (x, y): (usize, usize), moment: &Moment) -> Option<Spot> {
     let within = x < moment.size_px.0 && y < moment.size_px.1;
     within.then(|| view.at(x, y)).flatten()
 }

@@ -211,7 +211,7 @@ pub trait StillSurface: Sync {
     }
 
     /// What there is to say of a place.
-    fn told(&self, _place: &Place) -> Option<Entry> {
+    fn told(&self, _place: &SurfacePoint) -> Option<Entry> {
         None
     }
 
@@ -222,11 +222,11 @@ pub trait StillSurface: Sync {
 }
 
 /// Tells the color of a surface at a place.
-pub type Reader<'a> = Box<dyn FnMut(&Place) -> Rgba + 'a>;
+pub type Reader<'a> = Box<dyn FnMut(&SurfacePoint) -> Rgba + 'a>;
 
 /// A place on a surface as a pixel shows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
+pub struct SurfacePoint {
     /// The triangle, and where on it.
     pub hit: Hit,
     /// The place in the world.

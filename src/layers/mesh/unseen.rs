@@ -69,10 +69,10 @@ pub fn warning(layer: &MeshLayer, mesh: &Mesh, moments: &[Moment]) -> Option<Pro
         return nothing("/pose/scale", "its scale is 0", "make scale 1");
     }
     let both = layer.sides == Sides::Both;
-    let view = |moment: &Moment| View::new(layer.pose.at(moment.t), mesh, bounds, moment);
-    let mut views: Vec<View> = moments.iter().filter_map(view).collect();
+    let view = |moment: &Moment| Glimpse::new(layer.pose.at(moment.t), mesh, bounds, moment);
+    let mut views: Vec<Glimpse> = moments.iter().filter_map(view).collect();
     views.dedup();
-    let mut why = views.iter().filter_map(View::of_box).max();
+    let mut why = views.iter().filter_map(Glimpse::of_box).max();
     views.retain(|view| view.of_box().is_none());
     let most = (MOST_TRIANGLES / mesh.triangles.len()).max(2);
     for view in views.iter().step_by(views.len().div_ceil(most).max(1)) {
@@ -88,13 +88,13 @@ pub fn warning(layer: &MeshLayer, mesh: &Mesh, moments: &[Moment]) -> Option<Pro
 /// Whether a part of the mesh of a layer that is ready is in the frame; what stands before it does not count.
 pub fn is_in_frame(synth: &Synth, moment: &Moment) -> bool {
     let Some(bounds) = synth.mesh.bounds() else { return false };
-    let view = View::new(synth.pose.at(synth.time(moment)), &synth.mesh, bounds, moment);
+    let view = Glimpse::new(synth.pose.at(synth.time(moment)), &synth.mesh, bounds, moment);
     view.is_none_or(|view| view.of_box().is_none() && view.shows(&synth.mesh, synth.sides == Sides::Both))
 }
 
 /// The mesh at one moment.
 #[derive(Clone, Debug, PartialEq)]
-struct View {
+struct Glimpse {
     placed: Placed,
     eye: Eye,
     size_px: (usize, usize),
@@ -106,9 +106,9 @@ struct View {
     within: bool,
 }
 
-impl View {
+impl Glimpse {
     /// `None` without a camera.
-    fn new(placed: Placed, mesh: &Mesh, (low, high): (DVec3, DVec3), moment: &Moment) -> Option<View> {
+    fn new(placed: Placed, mesh: &Mesh, (low, high): (DVec3, DVec3), moment: &Moment) -> Option<Glimpse> {
         let eye = moment.eye?;
         let half = eye.middle_px / eye.focal_px;
         let sides = [[1.0, 0.0, half.x], [-1.0, 0.0, half.x], [0.0, 1.0, half.y], [0.0, -1.0, half.y]];
@@ -128,7 +128,7 @@ impl View {
         let model = placed.turn.transpose() * (eye.position - placed.position) / placed.scale;
         let within = model.cmpge(low).all() && model.cmple(high).all() && !mesh.triangles.is_empty();
         let sides = sides.map(|[x, y, back]| DVec3::new(x, y, -back));
-        Some(View { placed, eye, size_px: moment.size_px, sides, corners: std::array::from_fn(place), within })
+        Some(Glimpse { placed, eye, size_px: moment.size_px, sides, corners: std::array::from_fn(place), within })
     }
 
     /// Why nothing is seen, if the box alone tells.

@@ -7,7 +7,7 @@ use crate::base::picture::Picture;
 
 /// What is looked at while pictures are picked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sight {
+pub enum Subject {
     /// A frame of the clip, by its number.
     Frame(usize),
     /// What is cut out of that frame, over black.

@@ -248,7 +248,7 @@ pub enum Bind {
     /// One of the textures that an upload is packed into, by its number.
     Upload(Arc<dyn Upload>, usize),
     /// A texture that is drawn first.
-    Drawn(Box<Drawn>),
+    Drawn(Box<DrawnTexture>),
     /// One of the plan's own textures or arrays, by its number, to be read.
     Scratch(usize),
     /// One of the plan's own arrays, by its number, that a routine also writes.
@@ -262,7 +262,7 @@ pub enum Bind {
 
 /// A texture that is drawn before what reads it.
 #[derive(Debug)]
-pub struct Drawn {
+pub struct DrawnTexture {
     /// Its width and height, in pixels.
     pub size_px: (usize, usize),
     /// What is drawn in it.

@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::Vec4;
 
 use super::sprites::residue::Residues;
-use super::sprites::{Pictures, Place};
+use super::sprites::{KeyPlace, Pictures};
 use crate::base::pixels::Rgba;
 use crate::base::simd::vectorised;
 
@@ -15,7 +15,7 @@ const MOST: usize = 4;
 /// Which keys make a picture, and how.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Mix {
-    keys: [(Place, f32); MOST],
+    keys: [(KeyPlace, f32); MOST],
     count: usize,
     /// How much the slopes of the first two keys, to the right and down, add for each texel of the largest level.
     pub slopes: [[f32; 2]; 2],
@@ -25,20 +25,20 @@ pub struct Mix {
 
 impl Mix {
     /// These keys, each with its weight; the first two are those before and after.
-    pub fn of(keys: &[(Place, f32)]) -> Mix {
+    pub fn of(keys: &[(KeyPlace, f32)]) -> Mix {
         let mut mix = Mix::default();
         keys.iter().for_each(|key| mix.add(*key));
         mix
     }
 
     /// One more key; at most four.
-    pub fn add(&mut self, key: (Place, f32)) {
+    pub fn add(&mut self, key: (KeyPlace, f32)) {
         self.keys[self.count] = key;
         self.count += 1;
     }
 
     /// The keys, each with its weight.
-    pub fn keys(&self) -> &[(Place, f32)] {
+    pub fn keys(&self) -> &[(KeyPlace, f32)] {
         &self.keys[..self.count]
     }
 }

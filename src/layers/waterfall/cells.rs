@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::splat::Splat;
 
 /// A sprite to be drawn, with the cells that it may cover.
-pub struct Drawn<'a> {
+pub struct Covering<'a> {
     /// The sprite.
     pub splat: &'a Splat,
     /// The columns.

@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 
-use super::cells::{Drawn, covered};
+use super::cells::{Covering, covered};
 use super::model::Mixing;
 use super::splat::Splat;
 use super::strip::{Scratch, Strip};
@@ -34,16 +34,16 @@ pub fn in_order(blend: Mixing, splats: &[Splat]) -> Vec<&Splat> {
 }
 
 /// The sprites that cover cells, in the order in which they are drawn.
-pub fn drawn<'a>(blend: Mixing, splats: &'a [Splat], places: &[Vec<f64>; 2]) -> Vec<Drawn<'a>> {
+pub fn drawn<'a>(blend: Mixing, splats: &'a [Splat], places: &[Vec<f64>; 2]) -> Vec<Covering<'a>> {
     let cells = |splat: &'a Splat| {
         let [columns, rows] = covered(splat, places)?;
-        Some(Drawn { splat, columns, rows })
+        Some(Covering { splat, columns, rows })
     };
     in_order(blend, splats).into_par_iter().filter_map(cells).collect()
 }
 
 /// For each strip of so many rows, the numbers of the sprites that it draws.
-pub fn bins(drawn: &[Drawn], rows: usize) -> Vec<Vec<u32>> {
+pub fn bins(drawn: &[Covering], rows: usize) -> Vec<Vec<u32>> {
     let mut bins = vec![Vec::new(); rows.div_ceil(ROWS)];
     for (i, drawn) in drawn.iter().enumerate() {
         let strips = drawn.rows.start / ROWS..drawn.rows.end.div_ceil(ROWS);

@@ -12,7 +12,7 @@ use super::synth::Synth;
 use crate::base::picture::Picture;
 use crate::base::pixels::Rgba;
 use crate::layers::parts::marks::{Dot, Look, Mark, Shape};
-use crate::layers::parts::picking::{Picking, Sight};
+use crate::layers::parts::picking::{Picking, Subject};
 
 /// A window of water that is picked by hand, one of foam, and one that is chosen automatically.
 static PICK: Look = Look::new("pick", 40, [255, 220, 80, 255], 1.6).dots(Dot::Disc, 2.0);
@@ -28,16 +28,16 @@ const ELSEWHERE: f32 = 0.4;
 const HARDLY: f64 = 0.1;
 
 /// What there is to see; `None` without a clip, or if it has no such frame.
-pub fn picking(synth: &Synth, sight: Sight) -> Option<Picking> {
+pub fn picking(synth: &Synth, sight: Subject) -> Option<Picking> {
     let clip = synth.made_of.1.clip.as_ref()?;
     let marks = |frame: usize| {
         let tracks = numbered(synth);
         tracks.flat_map(|(pick, track)| of_track(track, pick, frame, synth.pictures.side)).collect()
     };
     let (picture, marks) = match sight {
-        Sight::Frame(frame) => (clip.frames.get(frame)?.clone(), marks(frame)),
-        Sight::Cut(frame) => (Arc::new(cut(synth, clip.frames.get(frame)?, frame)), marks(frame)),
-        Sight::Sheet => (Arc::new(laid(synth)), stills(synth)),
+        Subject::Frame(frame) => (clip.frames.get(frame)?.clone(), marks(frame)),
+        Subject::Cut(frame) => (Arc::new(cut(synth, clip.frames.get(frame)?, frame)), marks(frame)),
+        Subject::Sheet => (Arc::new(laid(synth)), stills(synth)),
     };
     let (frames, followed) = (clip.frames.len(), synth.made_of.0.track_frames());
     Some(Picking { picture, marks, frames, followed, side: synth.pictures.side as f64 })
@@ -165,27 +165,27 @@ mod tests {
             (3, [(falls, (16.0, 15.0), 1.0), (stays, (40.0, 6.0), 1.0)]),
             (6, [(falls, (16.0, 21.0), ELSEWHERE), (stays, (40.0, 6.0), ELSEWHERE)]),
         ] {
-            let found = picking(&synth, Sight::Frame(frame)).unwrap();
+            let found = picking(&synth, Subject::Frame(frame)).unwrap();
             let wanted = windows_there.map(|(path, at, strength)| (path, Point::from(at), strength));
             assert_eq!(windows(&found), wanted, "{frame}");
             assert!(Arc::ptr_eq(&found.picture, &synth.made_of.1.clip.as_ref().unwrap().frames[frame]));
             assert_eq!((found.frames, found.side), (8, 16.0));
         }
-        assert!(picking(&synth, Sight::Frame(8)).is_none());
+        assert!(picking(&synth, Subject::Frame(8)).is_none());
     }
 
     #[test]
     fn what_is_cut_out_is_seen_over_black() {
-        let found = picking(&synth(), Sight::Cut(1)).unwrap().picture;
+        let found = picking(&synth(), Subject::Cut(1)).unwrap().picture;
         assert!(found.texel(24, 17)[0] > 0.3, "{:?}", found.texel(24, 17));
         assert_eq!(found.texel(5, 40), [0.0, 0.0, 0.0, 1.0]);
-        let none = picking(&synth(), Sight::Cut(7)).unwrap().picture;
+        let none = picking(&synth(), Subject::Cut(7)).unwrap().picture;
         assert_eq!(none.texel(24, 31), [0.0, 0.0, 0.0, 1.0], "no key is of this frame");
     }
 
     #[test]
     fn the_sheet_marks_tracks_that_hardly_move() {
-        let found = picking(&synth(), Sight::Sheet).unwrap();
+        let found = picking(&synth(), Subject::Sheet).unwrap();
         assert_eq!((found.picture.width(), found.picture.height()), (48, 32));
         let marked: Vec<_> = found.marks.iter().map(|mark| (mark.look.name, mark.shape.clone())).collect();
         assert_eq!(marked, [(STILL.name, rectangle(Rect::new(1.0, 17.0, 47.0, 31.0)))]);

@@ -12,7 +12,7 @@ use crate::base::reduce::Reduced;
 use crate::layers::parts::album::Album;
 use crate::layers::parts::marks::{Mark, View};
 use crate::layers::parts::moment::Moment;
-use crate::layers::parts::picking::{Picking, Sight};
+use crate::layers::parts::picking::{Picking, Subject};
 use crate::layers::parts::plan::Plan;
 use crate::layers::parts::readout::Fact;
 use crate::layers::ready::{Ready, Still};
@@ -59,7 +59,7 @@ impl Ready for Synth {
         Some(album::album(self, between))
     }
 
-    fn picking(&self, sight: Sight) -> Option<Picking> {
+    fn picking(&self, sight: Subject) -> Option<Picking> {
         picking::picking(self, sight)
     }
 

@@ -10,7 +10,7 @@ use super::births::Alive;
 use super::lines::Line;
 use super::look::Shown;
 use super::model::{Between, Order, Tangents};
-use super::sprites::Place;
+use super::sprites::KeyPlace;
 use super::sprites::pyramid::Pyramid;
 use super::synth::Synth;
 use crate::base::maths::{atan2, cos, lerp, log2, sin, smoothstep};
@@ -182,7 +182,7 @@ fn clumped(synth: &Synth, line: &Line, alive: &Alive) -> f64 {
 }
 
 /// The keys that a sprite runs through.
-fn keys<'a>(synth: &'a Synth, line: &Line, alive: &Alive) -> Cow<'a, [Place]> {
+fn keys<'a>(synth: &'a Synth, line: &Line, alive: &Alive) -> Cow<'a, [KeyPlace]> {
     let kind = usize::from(line.foam);
     let pick = |share: f64, count: usize| (share * count as f64).floor() as usize;
     let all = &synth.keys[kind];
@@ -214,7 +214,7 @@ fn mixed(synth: &Synth, line: &Line, alive: &Alive, direction: impl Fn(f64) -> D
 }
 
 /// What is shown between key `i` and the next, `u` of the way; `ahead` tells where the line runs at a key.
-pub fn mix(between: &Between, keys: &[Place], (i, u): (usize, f64), ahead: impl Fn(usize) -> DVec2) -> Mix {
+pub fn mix(between: &Between, keys: &[KeyPlace], (i, u): (usize, f64), ahead: impl Fn(usize) -> DVec2) -> Mix {
     let [first] = keys else {
         let [a, b, leaving, reaching] = hermite(u);
         let mut mix = Mix::of(&[(keys[i], a as f32), (keys[i + 1], b as f32)]);

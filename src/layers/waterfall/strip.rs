@@ -6,7 +6,7 @@ use glam::Vec4;
 
 use super::between::Mixed;
 use super::blend::{Blend, Block, Planes, block};
-use super::cells::Drawn;
+use super::cells::Covering;
 use super::color::{before, neighbors};
 use super::splat::Splat;
 use super::sprites::LARGEST;
@@ -94,7 +94,7 @@ impl<'a> Strip<'a> {
 
     /// Draws a sprite.
     #[inline(always)]
-    pub fn lay(&mut self, drawn: &Drawn) {
+    pub fn lay(&mut self, drawn: &Covering) {
         let rows =
             drawn.rows.start.max(self.first)..drawn.rows.end.min(self.first + self.depth.len() / self.places[0].len());
         if rows.is_empty() {
@@ -201,7 +201,7 @@ impl<'a> Strip<'a> {
 
     /// Draws a turned sprite.
     #[inline(always)]
-    fn turned(&mut self, drawn: &Drawn, mixed: &Mixed, rows: Range<usize>, made: Range<usize>) {
+    fn turned(&mut self, drawn: &Covering, mixed: &Mixed, rows: Range<usize>, made: Range<usize>) {
         let (splat, side) = (drawn.splat, mixed.side);
         let blend = self.blend(splat, &drawn.columns);
         let Scratch { canvas, texels, aside, corners, .. } = &mut *self.scratch;
@@ -262,7 +262,7 @@ fn at_least<T: Copy + Default>(all: &mut Vec<T>, count: usize) -> &mut [T] {
 
 /// The rows of texels that a sprite reads in these rows of the frame.
 #[inline(always)]
-fn needed(drawn: &Drawn, places: &[Vec<f64>; 2], rows: &Range<usize>, side: usize) -> Range<usize> {
+fn needed(drawn: &Covering, places: &[Vec<f64>; 2], rows: &Range<usize>, side: usize) -> Range<usize> {
     let Splat { middle, size_px, turn, .. } = drawn.splat;
     let ends = |axis: usize, cells: &Range<usize>| [cells.start, cells.end - 1].map(|cell| places[axis][cell]);
     let (across, down) = (ends(0, &drawn.columns), ends(1, rows));

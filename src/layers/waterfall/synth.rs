@@ -15,7 +15,7 @@ use super::noise::Noise;
 use super::sprites::cut::{Sources, pictures};
 use super::sprites::model::{Sheet, Shows, Sprites};
 use super::sprites::residue::Residues;
-use super::sprites::{Pictures, Place, bytes_of};
+use super::sprites::{KeyPlace, Pictures, bytes_of};
 use crate::base::budget::Share;
 use crate::base::problem::Problem;
 use crate::layers::parts::materials::Materials;
@@ -44,7 +44,7 @@ pub struct Synth {
     /// The residues, by track and interval.
     pub residues: Arc<Residues>,
     /// The keys of all tracks of water, and of foam.
-    pub keys: [Vec<Place>; 2],
+    pub keys: [Vec<KeyPlace>; 2],
     /// Where among them the keys of each track are.
     pub tracks: [Vec<Range<usize>>; 2],
     /// How many residues each track has.
@@ -121,7 +121,7 @@ impl Synth {
 }
 
 /// All keys that sprites of a kind show, and where among them those of each track are.
-fn keys(pictures: &Pictures, foam: bool) -> (Vec<Place>, Vec<Range<usize>>) {
+fn keys(pictures: &Pictures, foam: bool) -> (Vec<KeyPlace>, Vec<Range<usize>>) {
     let (mut keys, mut tracks) = (Vec::new(), Vec::new());
     for track in pictures.of(foam) {
         let first = keys.len();

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::cells::{Drawn, inside};
+use super::cells::{Covering, inside};
 use super::splat::Splat;
 use crate::base::simd::{LANES, Lanes};
 
@@ -17,7 +17,7 @@ pub struct Corners {
 
 /// The columns that a turned sprite covers, row by row.
 pub struct Spans<'a> {
-    drawn: &'a Drawn<'a>,
+    drawn: &'a Covering<'a>,
     /// The places of the columns that it may cover, and how many there are in a pixel.
     places: &'a [f64],
     density: f64,
@@ -28,7 +28,7 @@ pub struct Spans<'a> {
 impl<'a> Spans<'a> {
     /// The columns of a sprite, of columns at these places.
     #[inline(always)]
-    pub fn new(drawn: &'a Drawn, places: &'a [f64]) -> Self {
+    pub fn new(drawn: &'a Covering, places: &'a [f64]) -> Self {
         let Splat { size_px, turn, .. } = drawn.splat;
         // |a dx + b dy| < half, along each of its axes.
         let axes = [(turn.x, turn.y, size_px.x / 2.0), (-turn.y, turn.x, size_px.y / 2.0)];

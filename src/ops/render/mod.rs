@@ -24,7 +24,7 @@ use crate::base::problem::Problem;
 use crate::base::text::counted;
 use crate::export::animation::matrix::Matrix;
 use crate::export::animation::{Show, Target, range, rate::Rate, scale};
-use crate::files::outputs::{self, Place};
+use crate::files::outputs::{self, Cleared};
 use crate::layers::parts::materials::Materials;
 use crate::layers::timeline::{Timeline, Wrap};
 use crate::render::bands::Bands;
@@ -74,7 +74,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
         }
         outcome?;
     }
-    let bytes = written.load(Ordering::Relaxed) + outputs::size(files.iter().map(Place::path));
+    let bytes = written.load(Ordering::Relaxed) + outputs::size(files.iter().map(Cleared::path));
     context.done(&what, bytes, begun);
     Ok(())
 }
@@ -169,7 +169,7 @@ fn frame_size(args: &Args, opened: &Opened) -> Result<(usize, usize)> {
 }
 
 /// What was written, in words.
-fn what(place: &str, files: &[Place], todo: &[Numbered], skipped: usize) -> String {
+fn what(place: &str, files: &[Cleared], todo: &[Numbered], skipped: usize) -> String {
     let skipped = if skipped > 0 { format!(" ({skipped} were there already)") } else { String::new() };
     let frames = counted(todo.len(), "frame");
     match files {

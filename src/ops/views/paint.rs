@@ -22,7 +22,7 @@ use crate::scene::shots::{self, Image, Picture};
 
 /// From where a layer is seen, and when.
 #[derive(Clone, Debug)]
-pub struct Sight {
+pub struct Standpoint {
     /// The layer, by its index.
     pub layer: usize,
     /// The camera, in the world.
@@ -33,7 +33,7 @@ pub struct Sight {
     pub size_px: (usize, usize),
 }
 
-impl Sight {
+impl Standpoint {
     /// What is seen of the layer, without what is drawn on its surface: a PNG.
     fn png(&self, synth: &Synth) -> Result<Vec<u8>> {
         let seen = Synth { size: self.size_px, ..synth.seen_from(self.camera.clone()) };
@@ -73,7 +73,7 @@ fn short(at: DVec3) -> DVec3 {
 pub fn begin(
     (scene, document): (&Path, &Document),
     synth: &Synth,
-    sight: &Sight,
+    sight: &Standpoint,
     (name, kind): (&str, Option<&str>),
 ) -> Result<(Applied, PathBuf)> {
     let wrong = |what: &str| Error::at(name, what).cure("choose another name");

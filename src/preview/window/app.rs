@@ -12,7 +12,7 @@ use super::clock::Clock;
 use super::hurry::Hurry;
 use super::manner::Manner;
 use super::mouse::Mouse;
-use super::opened::{Opened, first_size};
+use super::opened::{OpenWindow, first_size};
 use super::own_view::OwnView;
 use super::run::Outcome;
 use super::show::{Cached, Show};
@@ -33,7 +33,7 @@ pub struct App {
     pub(super) letters: Letters,
     pub(super) state: State,
     pub(super) shown: Option<Show>,
-    pub(super) opened: Option<Opened>,
+    pub(super) opened: Option<OpenWindow>,
     pub(super) marks: Cached,
     pub(super) mouse: Mouse,
     /// Keys that are held with others.
@@ -100,7 +100,7 @@ impl App {
     /// Opens the window if it is not open yet.
     pub(super) fn open(&mut self, event_loop: &ActiveEventLoop) -> Result<()> {
         let Some(instance) = self.instance.take() else { return Ok(()) };
-        self.opened = Some(Opened::open(event_loop, instance, &self.manner, self.first_size(event_loop))?);
+        self.opened = Some(OpenWindow::open(event_loop, instance, &self.manner, self.first_size(event_loop))?);
         self.report();
         self.resized();
         Ok(())
@@ -133,8 +133,8 @@ impl App {
         let played = self.state.transport.playing;
         match self.state.run(command) {
             Outcome::Redraw => self.redraw(),
-            Outcome::FullScreen => self.opened.iter().for_each(Opened::toggle_full_screen),
-            Outcome::Window => self.opened.iter().for_each(Opened::leave_full_screen),
+            Outcome::FullScreen => self.opened.iter().for_each(OpenWindow::toggle_full_screen),
+            Outcome::Window => self.opened.iter().for_each(OpenWindow::leave_full_screen),
             Outcome::Quit => event_loop.exit(),
             Outcome::Unknown => {}
         }

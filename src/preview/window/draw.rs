@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use super::app::App;
-use super::screen::Drawn;
+use super::screen::Presented;
 use super::show::Show;
 use super::text::of_system;
 use super::thin::Thin;
@@ -22,10 +22,10 @@ impl App {
             self.letters.begin();
             match opened.paint(&mut self.state, self.shown.as_ref(), &mut self.marks, (&self.letters, &self.proxy)) {
                 _ if opened.gpu.device().is_lost() => self.reopen()?,
-                Ok(Drawn::Yes) => self.drawn(),
-                Ok(Drawn::Again) => opened.window.request_redraw(),
-                Ok(Drawn::Hidden) => opened.hidden = true,
-                Ok(Drawn::Lost) => self.reopen()?,
+                Ok(Presented::Yes) => self.drawn(),
+                Ok(Presented::Again) => opened.window.request_redraw(),
+                Ok(Presented::Hidden) => opened.hidden = true,
+                Ok(Presented::Lost) => self.reopen()?,
                 Err(error) => return Err(error),
             }
             self.clock.drawn += 1;

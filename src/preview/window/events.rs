@@ -14,7 +14,7 @@ use winit::window::WindowId;
 use super::app::App;
 use super::input;
 use super::mouse::{Asked, Button, Held};
-use super::opened::Opened;
+use super::opened::OpenWindow;
 use super::worker::Event;
 use crate::base::error::{Error, Result};
 use crate::preview::keys::TRY_NOW;
@@ -69,7 +69,7 @@ impl App {
 
     /// Learns which keys are held with the mouse while somebody else has the keyboard, as the editor mostly has.
     fn look_at_keys(&mut self) {
-        if let Some((shift, alt)) = self.opened.as_ref().and_then(Opened::held_elsewhere) {
+        if let Some((shift, alt)) = self.opened.as_ref().and_then(OpenWindow::held_elsewhere) {
             self.mouse.hold(Held { alt, shift });
         }
     }
@@ -79,7 +79,7 @@ impl App {
         let mut asked = Asked::Nothing;
         if pressed {
             self.look_at_keys();
-            self.opened.iter().for_each(Opened::clicked);
+            self.opened.iter().for_each(OpenWindow::clicked);
         }
         self.leading(|app| {
             asked = match pressed {
@@ -113,7 +113,7 @@ impl App {
             MouseScrollDelta::PixelDelta(by) => by.y / WHEEL_PX,
             MouseScrollDelta::LineDelta(_, 0.0) => return,
             MouseScrollDelta::LineDelta(_, y) => {
-                let twice = self.opened.as_ref().is_some_and(Opened::wheel_is_a_button);
+                let twice = self.opened.as_ref().is_some_and(OpenWindow::wheel_is_a_button);
                 if !self.mouse.counts(twice) {
                     return;
                 }
@@ -200,7 +200,7 @@ impl ApplicationHandler<Event> for App {
 
     fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {
         let rest = self.state.transport.until_next(&self.state.timeline);
-        let interval = self.opened.as_ref().map(Opened::interval);
+        let interval = self.opened.as_ref().map(OpenWindow::interval);
         let flow = match interval {
             Some(interval) if self.plays_visibly() => ControlFlow::WaitUntil(self.clock.next(interval, rest)),
             Some(_) if self.state.transport.playing && self.opened.as_ref().is_some_and(|o| o.hidden) => {

@@ -14,7 +14,7 @@ use super::manner::{Manner, PLACE};
 use super::mouse::Shape;
 use super::own_view::OwnView;
 use super::pass::{self, For};
-use super::screen::{Drawn, Pictures, Screen, Strokes};
+use super::screen::{Pictures, Presented, Screen, Strokes};
 use super::show::{Cached, Show, jump_at, seen, thinned, under};
 use super::state::{BAR_PX, State};
 use super::text::Letters;
@@ -38,7 +38,7 @@ const MOST_OF_MONITOR: f64 = 0.85;
 const RATE: f64 = 60.0;
 
 /// What is open once there is something to show.
-pub struct Opened {
+pub struct OpenWindow {
     pub window: Arc<Window>,
     pub gpu: Gpu,
     pub screen: Screen,
@@ -49,21 +49,21 @@ pub struct Opened {
     desk: Option<Desk>,
     looked: Option<Instant>,
     shape: Shape,
-    passes: pass::Kept,
+    passes: pass::KeptPasses,
     /// From where it was found out whether anything is seen: the window's own view, the scene time and the scene.
     looked_from: Option<(OwnView, f64, u64)>,
     /// Whether the CPU makes the picture.
     by_cpu: bool,
 }
 
-impl Opened {
+impl OpenWindow {
     /// Opens the window. If the person did not ask for it at this moment, it does not take the keyboard focus.
     pub fn open(
         event_loop: &ActiveEventLoop,
         instance: wgpu::Instance,
         manner: &Manner,
         size: PhysicalSize<u32>,
-    ) -> Result<Opened> {
+    ) -> Result<OpenWindow> {
         let attributes = Window::default_attributes()
             .with_title(format!("{} - plica", manner.name))
             .with_inner_size(size)
@@ -79,18 +79,18 @@ impl Opened {
         let (gpu, screen) = Screen::open(instance, window.clone())?;
         let (shape, passes, looked_from, by_cpu) = Default::default();
         let (hidden, covered, looked) = Default::default();
-        Ok(Opened { window, gpu, screen, hidden, covered, desk, looked, shape, passes, looked_from, by_cpu })
+        Ok(OpenWindow { window, gpu, screen, hidden, covered, desk, looked, shape, passes, looked_from, by_cpu })
     }
 
     /// The same window on a new device.
-    pub fn anew(self) -> Result<Opened> {
-        let Opened { window, gpu, screen, desk, covered, shape, .. } = self;
+    pub fn anew(self) -> Result<OpenWindow> {
+        let OpenWindow { window, gpu, screen, desk, covered, shape, .. } = self;
         let instance = gpu.instance().clone();
         drop((gpu, screen)); // a window has one surface at a time
         let (gpu, screen) = Screen::open(instance, window.clone())?;
         let (passes, looked_from, by_cpu) = Default::default();
         let (hidden, looked) = Default::default();
-        Ok(Opened { window, gpu, screen, hidden, covered, desk, looked, shape, passes, looked_from, by_cpu })
+        Ok(OpenWindow { window, gpu, screen, hidden, covered, desk, looked, shape, passes, looked_from, by_cpu })
     }
 
     /// Whether the window can be seen: checked now and then while it can, and at every drawing while it cannot.
@@ -138,7 +138,7 @@ impl Opened {
         show: Option<&Show>,
         marks: &mut Cached,
         (letters, wake): (&Letters, &EventLoopProxy<Event>),
-    ) -> Result<Drawn> {
+    ) -> Result<Presented> {
         let pictures = match show {
             Some(show) => {
                 marks.follow(state, show, letters);

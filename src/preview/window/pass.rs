@@ -29,7 +29,7 @@ const PATIENCE: Duration = Duration::from_secs(1);
 
 /// The textures of a pass, and what they were made for.
 #[derive(Default)]
-pub struct Kept {
+pub struct KeptPasses {
     made_for: Option<For>,
     textures: Option<Textures>,
     /// Pixels of the frame a pixel of the textures.
@@ -61,7 +61,7 @@ pub struct For {
     pub left_out: u32,
 }
 
-impl Kept {
+impl KeptPasses {
     /// The textures; those from before as long as others are being made, if there were any. Where that ends later,
     /// `wake` is told.
     pub fn follow(

@@ -25,7 +25,7 @@ const CHECK_PX: f64 = 8.0;
 
 /// What became of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Drawn {
+pub enum Presented {
     /// It is on the screen.
     Yes,
     /// The surface has changed: draw again.
@@ -96,28 +96,28 @@ impl Screen {
     }
 
     /// Draws the picture with strokes over it.
-    pub fn draw(&mut self, gpu: &Gpu, state: &State, pictures: &Pictures, strokes: &Strokes<'_>) -> Result<Drawn> {
+    pub fn draw(&mut self, gpu: &Gpu, state: &State, pictures: &Pictures, strokes: &Strokes<'_>) -> Result<Presented> {
         let size = self.window.inner_size();
         if size.width == 0 || size.height == 0 {
-            return Ok(Drawn::Hidden);
+            return Ok(Presented::Hidden);
         }
         if self.configured != (size.width, size.height) {
             self.configure(gpu, size.width, size.height)?;
         }
         let texture = match self.surface.get_current_texture() {
             wgpu::CurrentSurfaceTexture::Success(texture) | wgpu::CurrentSurfaceTexture::Suboptimal(texture) => texture,
-            wgpu::CurrentSurfaceTexture::Timeout => return Ok(Drawn::Again),
-            wgpu::CurrentSurfaceTexture::Occluded => return Ok(Drawn::Hidden),
+            wgpu::CurrentSurfaceTexture::Timeout => return Ok(Presented::Again),
+            wgpu::CurrentSurfaceTexture::Occluded => return Ok(Presented::Hidden),
             wgpu::CurrentSurfaceTexture::Outdated | wgpu::CurrentSurfaceTexture::Validation => {
                 self.configured = (0, 0);
-                return Ok(Drawn::Again);
+                return Ok(Presented::Again);
             }
-            wgpu::CurrentSurfaceTexture::Lost => return Ok(Drawn::Lost),
+            wgpu::CurrentSurfaceTexture::Lost => return Ok(Presented::Lost),
         };
         self.paint(gpu, &texture.texture, state, pictures, strokes)?;
         self.window.pre_present_notify();
         gpu.device().queue.present(texture);
-        Ok(Drawn::Yes)
+        Ok(Presented::Yes)
     }
 
     fn configure(&mut self, gpu: &Gpu, width: u32, height: u32) -> Result<()> {

@@ -99,10 +99,10 @@ pub fn name(scene: &Scene, pointer: &str) -> Option<String> {
 pub struct Cached {
     /// Strokes that stay as they are while the animation runs.
     pub fixed: Canvas,
-    made_for: Option<(View, Sight)>,
+    made_for: Option<(View, Basis)>,
     /// Those that change with every frame.
     pub moving: Canvas,
-    moved_for: Option<(View, Sight, Option<OwnView>)>,
+    moved_for: Option<(View, Basis, Option<OwnView>)>,
     /// What is dragged, as it would be.
     pub dragged: Canvas,
     /// Names and numbers, above all else of the overlay.
@@ -119,7 +119,7 @@ pub struct Cached {
 
 /// Everything but the overlays that strokes depend on.
 #[derive(Clone, Debug, PartialEq)]
-struct Sight {
+struct Basis {
     viewport: Viewport,
     window: Size,
     scale: f64,
@@ -134,7 +134,7 @@ impl Cached {
     pub fn follow(&mut self, state: &State, show: &Show, letters: &Letters) {
         let viewport = state.viewport.clone();
         let (window, scale, grid) = (state.window, state.scale, state.shows("view-grid"));
-        let sight = Sight { viewport, window, scale, grid, revision: self.revision, letters: letters.generation() };
+        let sight = Basis { viewport, window, scale, grid, revision: self.revision, letters: letters.generation() };
         let fixed = Some((state.fixed_view(), sight.clone()));
         let moving = Some((state.moving_view(), sight, state.own));
         self.follow_drag(state, show);

@@ -2,7 +2,7 @@
 //! until it is encoded.
 
 use super::device::Device;
-use super::kept::{Kept, check_size, texture};
+use super::kept::{KeptTextures, check_size, texture};
 use super::run::{FRAME, Runner};
 use crate::base::error::Result;
 use crate::layers::parts::plan::{Blend, COMMON, Plan, Program, Step};
@@ -72,7 +72,7 @@ impl Painter {
     }
 
     /// What is kept on the device.
-    pub fn kept(&mut self) -> &mut Kept {
+    pub fn kept(&mut self) -> &mut KeptTextures {
         self.runner.kept()
     }
 

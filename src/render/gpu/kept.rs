@@ -67,7 +67,7 @@ pub fn upload_all(
 
 /// Textures by what they were packed from.
 #[derive(Default)]
-pub struct Kept {
+pub struct KeptTextures {
     rows: Vec<Row>,
 }
 
@@ -77,7 +77,7 @@ struct Row {
     used: bool,
 }
 
-impl Kept {
+impl KeptTextures {
     /// One of the textures that something is packed into, uploaded if it is new.
     pub fn get(&mut self, device: &Device, of: &Arc<dyn Upload>, part: usize) -> Result<Texture> {
         let textures = self.all(of, |of| of.pack().iter().map(|packed| upload(device, packed, &|_| true)).collect())?;
@@ -209,11 +209,11 @@ mod tests {
 
     #[test]
     fn what_is_shared_is_made_once_and_what_is_unused_goes() {
-        let mut kept = Kept::default();
+        let mut kept = KeptTextures::default();
         let picture = || -> Arc<dyn Upload> { Arc::new(Picture::filled(1, 1, [0.0; 4])) };
         let (a, b) = (picture(), picture());
         let mut made = 0;
-        let mut get = |kept: &mut Kept, key: &Arc<dyn Upload>| {
+        let mut get = |kept: &mut KeptTextures, key: &Arc<dyn Upload>| {
             let make = |_: &dyn Upload| {
                 made += 1;
                 Ok(Vec::new())

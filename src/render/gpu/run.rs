@@ -3,7 +3,7 @@
 use std::mem::offset_of;
 
 use super::device::{Device, failed, readable};
-use super::kept::{Kept, Texture, check_size, texture};
+use super::kept::{KeptTextures, Texture, check_size, texture};
 use super::pipeline::{Bound, DEPTH, Pipelines, Way};
 use super::target::{Scratches, Spare, Target};
 use crate::base::error::Result;
@@ -17,7 +17,7 @@ pub const FRAME: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 #[derive(Default)]
 pub struct Runner {
     pipelines: Pipelines,
-    kept: Kept,
+    kept: KeptTextures,
     spare: Spare,
     /// How much room the plans since the last [`Runner::had_room`] have asked for.
     asked: Vec<wgpu::Buffer>,
@@ -197,7 +197,7 @@ impl Runner {
     }
 
     /// What is kept on the device.
-    pub fn kept(&mut self) -> &mut Kept {
+    pub fn kept(&mut self) -> &mut KeptTextures {
         &mut self.kept
     }
 

@@ -5,6 +5,6 @@ mod past;
 mod replay;
 mod tree;
 
-pub use past::{Applied, History, Told, Way};
+pub use past::{Applied, Aside, History, Way};
 pub use replay::{Remade, Replay};
 pub use tree::{Route, Stamp, Step};

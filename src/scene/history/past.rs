@@ -32,7 +32,7 @@ pub enum Way {
 
 /// A step of another branch, in words.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Told {
+pub struct Aside {
     /// The state that the step leads to.
     pub state: usize,
     /// The state before it.
@@ -210,7 +210,7 @@ impl History {
     }
 
     /// At most `most` steps of other branches, those that begin near the current state first.
-    pub fn told_aside(&self, most: usize) -> Vec<Told> {
+    pub fn told_aside(&self, most: usize) -> Vec<Aside> {
         let after = self.tree.after_each();
         let mut json = self.document.json().clone();
         let ahead: Vec<usize> = self.tree.ahead().collect();
@@ -239,7 +239,7 @@ impl History {
         (at, from): (usize, Option<usize>),
         json: &Value,
         most: usize,
-        told: &mut Vec<Told>,
+        told: &mut Vec<Aside>,
     ) {
         let mut json = json.clone();
         // (state, true) enters a state, (state, false) leaves it again.
@@ -257,7 +257,7 @@ impl History {
                 return;
             }
             let words = words::in_short(&json, &step.edit);
-            told.push(Told { state, before: step.before, time_ms: step.time_ms, words });
+            told.push(Aside { state, before: step.before, time_ms: step.time_ms, words });
             if step.edit.patch(&mut json).is_err() {
                 return;
             }

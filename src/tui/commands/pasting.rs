@@ -7,7 +7,7 @@ use super::command::Done;
 use super::yanking::here;
 use super::{cells, obey};
 use crate::base::pointer::Pointer;
-use crate::scene::field::{self, Kind};
+use crate::scene::field;
 use crate::tui::document::csv;
 use crate::tui::document::pointers::item_of;
 use crate::tui::document::rows::Target;

@@ -12,7 +12,7 @@ use crate::base::problem::{nearest, quoted};
 use crate::layers::parts::shots::{SeenFrom, Shot};
 use crate::layers::space::camera::Camera;
 use crate::layers::space::fit;
-use crate::ops::views::paint::{self, Sight};
+use crate::ops::views::paint::{self, Standpoint};
 use crate::scene::shots;
 use crate::tui::events::Effect;
 use crate::tui::state::State;
@@ -83,7 +83,7 @@ fn add(state: &mut State, name: &str, kind: Option<&str>, size: Option<&str>) ->
         Some((width, height)) => (side(width)?, side(height)?),
         None => synth.size,
     };
-    let sight = Sight { layer, camera: eye(state)?, time: state.play.time, size_px };
+    let sight = Standpoint { layer, camera: eye(state)?, time: state.play.time, size_px };
     let scene = (state.scene.path(), state.document());
     let (applied, picture) = paint::begin(scene, &synth, &sight, (name, kind)).map_err(|error| error.to_string())?;
     state.edit(applied.edit, false)?;

@@ -9,7 +9,7 @@ use crate::base::picture::Picture;
 use crate::layers::KINDS;
 use crate::layers::parts::marks::{Look, Mark, Shape};
 use crate::layers::parts::materials::{List, Materials};
-use crate::layers::parts::picking::Sight;
+use crate::layers::parts::picking::Subject;
 use crate::layers::starts::Shown;
 use crate::render::{self, Synth};
 
@@ -19,7 +19,7 @@ pub struct ClipView {
     /// The layer whose pictures are picked.
     pub layer: usize,
     /// What of its clip is seen.
-    pub sight: Sight,
+    pub sight: Subject,
     /// What is selected.
     pub selection: String,
 }

@@ -6,7 +6,6 @@ use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 
 use super::write;
-use crate::scene::field::Kind;
 use crate::tui::document::cell;
 use crate::tui::document::cell::{Cell, Part};
 use crate::tui::document::derived;

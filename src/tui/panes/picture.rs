@@ -9,7 +9,7 @@ use ratatui::style::{Color, Modifier, Style};
 
 use super::{arrow, write};
 use crate::layers::parts::marks::{Dot, Mark, SELECTED, Shape};
-use crate::layers::parts::picking::Sight;
+use crate::layers::parts::picking::Subject;
 use crate::render::overlay;
 use crate::render::part::Part;
 use crate::tui::graphics::clip::square;
@@ -37,9 +37,9 @@ pub fn title(state: &State) -> String {
         .map(|asked| format!(" {}", asked.words(state.document().scene())))
         .unwrap_or_default();
     let what = match state.picture.looking.map(|looking| (looking.sight(), looking.frames)) {
-        Some((Sight::Frame(frame), frames)) => format!("clip {frame} of {frames}"),
-        Some((Sight::Cut(frame), frames)) => format!("cut out of {frame} of {frames}"),
-        Some((Sight::Sheet, _)) => "all that is cut out".into(),
+        Some((Subject::Frame(frame), frames)) => format!("clip {frame} of {frames}"),
+        Some((Subject::Cut(frame), frames)) => format!("cut out of {frame} of {frames}"),
+        Some((Subject::Sheet, _)) => "all that is cut out".into(),
         None => match (state.picture.painting, painting::current(state)) {
             (Some(Painting { sees: Sees::Painting, share, .. }), Some((.., name))) => {
                 format!("painting {}, {:.0} % of it", plain(&name), share * 100.0)

@@ -59,7 +59,7 @@ const BETWEEN: &str = "   ";
 
 /// The entries in words, by the line that they stand in.
 #[derive(Default)]
-struct Told<'a> {
+struct InWords<'a> {
     /// What the pixel belongs to.
     of: Vec<&'a str>,
     flags: Vec<String>,
@@ -70,8 +70,8 @@ struct Told<'a> {
     lists: Vec<String>,
 }
 
-fn told<'a>(entries: impl Iterator<Item = &'a Entry>) -> Told<'a> {
-    let mut told = Told::default();
+fn told<'a>(entries: impl Iterator<Item = &'a Entry>) -> InWords<'a> {
+    let mut told = InWords::default();
     for Entry { label, value, .. } in entries {
         match value {
             Value::Of(name) => told.of.extend(name.as_deref()),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use kurbo::{Point, Vec2};
 
-use crate::layers::parts::picking::Sight;
+use crate::layers::parts::picking::Subject;
 use crate::preview::views::Switches;
 use crate::render::Synth;
 use crate::render::passes::Asked;
@@ -128,11 +128,11 @@ impl Looking {
     }
 
     /// What is seen.
-    pub fn sight(self) -> Sight {
+    pub fn sight(self) -> Subject {
         match self {
-            Looking { sheet: true, .. } => Sight::Sheet,
-            Looking { cut: true, frame, .. } => Sight::Cut(frame),
-            Looking { frame, .. } => Sight::Frame(frame),
+            Looking { sheet: true, .. } => Subject::Sheet,
+            Looking { cut: true, frame, .. } => Subject::Cut(frame),
+            Looking { frame, .. } => Subject::Frame(frame),
         }
     }
 }

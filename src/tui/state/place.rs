@@ -21,26 +21,26 @@ fn read(document: &Document, pointer: &str) -> Option<Point> {
 }
 
 /// Where the place of something is written: as a pair, or as separate x and y.
-enum Place {
+enum WrittenAt {
     Pair(String),
     Apart(String),
 }
 
 /// The place of what is at `pointer`; `None` if it has none.
-fn place(document: &Document, pointer: &str) -> Option<(Place, Point)> {
+fn place(document: &Document, pointer: &str) -> Option<(WrittenAt, Point)> {
     let field = field::field(document, pointer)?;
     if is_pair(&field, ["x", "y"]) {
-        return read(document, pointer).map(|at| (Place::Pair(pointer.into()), at));
+        return read(document, pointer).map(|at| (WrittenAt::Pair(pointer.into()), at));
     }
     if !field.kind.is_object() {
         return None;
     }
     let children = field::children(document, pointer);
     if let Some(child) = children.iter().find(|child| is_pair(&child.field, ["x", "y"])) {
-        return read(document, &child.pointer).map(|at| (Place::Pair(child.pointer.clone()), at));
+        return read(document, &child.pointer).map(|at| (WrittenAt::Pair(child.pointer.clone()), at));
     }
     let number = |name: &str| field::value(document, &format!("{pointer}/{name}"))?.as_f64();
-    Some((Place::Apart(pointer.into()), Point::new(number("x")?, number("y")?)))
+    Some((WrittenAt::Apart(pointer.into()), Point::new(number("x")?, number("y")?)))
 }
 
 /// Where what is at `pointer` is; `None` if it has no place.
@@ -48,18 +48,18 @@ pub fn of(document: &Document, pointer: &str) -> Option<Point> {
     place(document, pointer).map(|(_, at)| at)
 }
 
-fn move_to(document: &Document, place: &Place, to: Point) -> Edit {
+fn move_to(document: &Document, place: &WrittenAt, to: Point) -> Edit {
     let (x, y) = (number::json(tidy(to.x)), number::json(tidy(to.y)));
     match place {
-        Place::Pair(pointer) => Edit::set(document, pointer, Value::from(vec![x, y])),
-        Place::Apart(pointer) => Edit::all(
+        WrittenAt::Pair(pointer) => Edit::set(document, pointer, Value::from(vec![x, y])),
+        WrittenAt::Apart(pointer) => Edit::all(
             [("x", x), ("y", y)].map(|(name, value)| Edit::set(document, &format!("{pointer}/{name}"), value)),
         ),
     }
 }
 
 /// What has the focus and a place: the row, or one of its ancestors.
-fn placed(state: &State) -> Option<(String, Place, Point)> {
+fn placed(state: &State) -> Option<(String, WrittenAt, Point)> {
     let focused = state.focused();
     let document = state.document();
     Pointer(&focused)

@@ -17,7 +17,7 @@ use crate::scene::{Document, Edit};
 use crate::tui::text::numbers;
 
 /// The place of something in space: the field that has it, and where that is in the world.
-pub type Place = (String, DVec3);
+pub type InSpace = (String, DVec3);
 
 /// From the coordinates of what is at `pointer` to the world, at the time that is shown.
 fn to_world(state: &State, document: &Document, pointer: &str) -> DAffine3 {
@@ -26,7 +26,7 @@ fn to_world(state: &State, document: &Document, pointer: &str) -> DAffine3 {
 }
 
 /// The place of what is at `pointer` in a document; `None` if it has none in space.
-pub fn place(state: &State, document: &Document, pointer: &str) -> Option<Place> {
+pub fn place(state: &State, document: &Document, pointer: &str) -> Option<InSpace> {
     let (layer, _) = field::layer_of(document, pointer)?;
     let in_space = layer.kind().space == Space::World;
     let is_object = field::field(document, pointer)?.kind.is_object();
@@ -41,7 +41,7 @@ fn is_place(field: &Field) -> bool {
 }
 
 /// What has the focus and a place in space: the row, or one of its ancestors.
-pub fn selected(state: &State) -> Option<(String, Place)> {
+pub fn selected(state: &State) -> Option<(String, InSpace)> {
     let focused = state.focused();
     let mut upward = Pointer(&focused).upward();
     upward.find_map(|pointer| Some((pointer.to_owned(), place(state, state.document(), pointer)?)))

@@ -9,7 +9,7 @@ use super::support::{at, press, said_last, state_of};
 use crate::base::clip::Clip;
 use crate::base::picture::Picture;
 use crate::layers::parts::materials::Materials;
-use crate::layers::parts::picking::Sight;
+use crate::layers::parts::picking::Subject;
 use crate::scene::check;
 use crate::tui::commands::update::update;
 use crate::tui::events::{Effect, Event, Synthesis};
@@ -122,13 +122,13 @@ fn the_pane_shows_the_clip_until_it_is_left() {
     assert_eq!((state.cursor.focus, state.picture.size), (Pane::Picture, Some((64, 48))));
     assert_eq!(state.picture.cursor, Point::new(24.0, 17.0));
     for (keys, sight, size) in [
-        ("", Some(Sight::Frame(1)), (64, 48)),
-        ("3 ]", Some(Sight::Frame(4)), (64, 48)),
-        ("z M", Some(Sight::Cut(4)), (64, 48)),
-        ("z C", Some(Sight::Sheet), (48, 48)),
-        ("z C", Some(Sight::Cut(4)), (64, 48)),
-        ("z M 9 ]", Some(Sight::Frame(7)), (64, 48)),
-        ("w", Some(Sight::Frame(3)), (64, 48)),
+        ("", Some(Subject::Frame(1)), (64, 48)),
+        ("3 ]", Some(Subject::Frame(4)), (64, 48)),
+        ("z M", Some(Subject::Cut(4)), (64, 48)),
+        ("z C", Some(Subject::Sheet), (48, 48)),
+        ("z C", Some(Subject::Cut(4)), (64, 48)),
+        ("z M 9 ]", Some(Subject::Frame(7)), (64, 48)),
+        ("w", Some(Subject::Frame(3)), (64, 48)),
         ("Esc", None, (120, 90)),
     ] {
         press(&mut state, keys);

@@ -17,7 +17,7 @@ use crate::base::error::{Error, Result};
 use crate::base::pixels::Frame;
 use crate::export::animation::{Show, Sink};
 use crate::files::draft;
-use crate::files::outputs::{Kind, Place};
+use crate::files::outputs::{Cleared, Kind};
 use crate::files::video;
 use crate::files::write::{self, Atomic};
 
@@ -151,7 +151,7 @@ struct Video {
 }
 
 /// Begins a video.
-pub fn begin(codec: &'static Codec, place: &Place, show: Show) -> Result<Box<dyn Sink>> {
+pub fn begin(codec: &'static Codec, place: &Cleared, show: Show) -> Result<Box<dyn Sink>> {
     let program = find(codec, &show)?;
     let file = draft::for_program(place)?;
     let mut command = Command::new(program);

@@ -15,7 +15,7 @@ use crate::layers::mesh::pose::Placed;
 use crate::layers::mesh::slot::{Before, Look, Reader, ReadySurface, Slot, StillSurface, place};
 use crate::layers::parts::materials::{List, Of, Use, What};
 use crate::layers::parts::moment::{Columns, Moment};
-use crate::layers::parts::plan::{Bind, Drawn};
+use crate::layers::parts::plan::{Bind, DrawnTexture};
 use crate::layers::ready::{Making, Texture};
 
 /// A layer of the scene, by the texture coordinates of the mesh.
@@ -65,7 +65,7 @@ impl ReadySurface for LayerTexture {
 
     fn plan(&self, moment: &Moment, _placed: &Placed) -> Look {
         let plan = self.0.layer.plan(&self.moment(moment));
-        Look::Picture(Bind::Drawn(Box::new(Drawn { size_px: self.0.size_px, plan })))
+        Look::Picture(Bind::Drawn(Box::new(DrawnTexture { size_px: self.0.size_px, plan })))
     }
 
     fn unmoved(self: Arc<Self>) -> Arc<dyn ReadySurface> {

@@ -67,7 +67,7 @@ pub struct Pictures {
 }
 
 /// The place of a key: its track, and its number in it.
-pub type Place = (usize, usize);
+pub type KeyPlace = (usize, usize);
 
 impl Pictures {
     /// One track of a single key that shows nothing.
@@ -85,12 +85,12 @@ impl Pictures {
     }
 
     /// A key.
-    pub fn key(&self, (track, key): Place) -> &Pyramid<4> {
+    pub fn key(&self, (track, key): KeyPlace) -> &Pyramid<4> {
         &self.tracks[track].keys[key].texels
     }
 
     /// The number of a key among all.
-    pub fn number(&self, (track, key): Place) -> usize {
+    pub fn number(&self, (track, key): KeyPlace) -> usize {
         self.tracks[..track].iter().map(|track| track.keys.len()).sum::<usize>() + key
     }
 

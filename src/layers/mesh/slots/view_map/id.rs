@@ -73,7 +73,7 @@ pub fn share_of(seen: [DVec3; 3], focal_px: f64) -> f64 {
 }
 
 /// A mesh as a camera sees it.
-struct Sight<'a> {
+struct SeenMesh<'a> {
     mesh: &'a Mesh,
     atlas: &'a Atlas,
     camera: &'a Camera,
@@ -101,7 +101,7 @@ impl Seen {
         let size = (camera.size_px.0 * TIMES, camera.size_px.1 * TIMES);
         let seen = mesh.vertices.iter().map(|vertex| camera.seen(vertex.position)).collect();
         let raster = Raster::new(&eye, size, Vec2::new(0.5, 0.5), &mesh.triangles, seen, true);
-        let sight = Sight { mesh, atlas, camera, raster, first: f64::from(first) };
+        let sight = SeenMesh { mesh, atlas, camera, raster, first: f64::from(first) };
         let left_out = if edge > 0.0 { sight.beside_steps(size, edge) } else { Vec::new() };
         let bands = (0..size.1.div_ceil(BAND)).into_par_iter().map(|band| {
             let rows = band * BAND..((band + 1) * BAND).min(size.1);
@@ -125,7 +125,7 @@ impl Seen {
     }
 }
 
-impl Sight<'_> {
+impl SeenMesh<'_> {
     fn facet(&self, triangle: usize) -> Facet {
         let vertices = self.mesh.triangles[triangle].map(|corner| &self.mesh.vertices[corner as usize]);
         let corners = vertices.map(|vertex| vertex.position);

@@ -8,7 +8,7 @@ use super::id::{depth_of, share_of};
 use super::map::Map;
 use super::sample::{Reader, Spot};
 use crate::layers::mesh::pose::Placed;
-use crate::layers::mesh::slot::Place;
+use crate::layers::mesh::slot::SurfacePoint;
 use crate::layers::parts::moment::Moment;
 use crate::layers::space::eye::Eye;
 use crate::layers::space::raster::NONE;
@@ -60,7 +60,7 @@ impl<'a> Looked<'a> {
     }
 
     /// What tells how the surface is looked at, at one place after the other.
-    pub fn spots(&self) -> impl FnMut(&Place) -> Option<Spot> + '_ {
+    pub fn spots(&self) -> impl FnMut(&SurfacePoint) -> Option<Spot> + '_ {
         // Neighbors mostly show the same triangle.
         let mut last = (NONE, 0.0);
         move |place| {

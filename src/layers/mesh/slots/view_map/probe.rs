@@ -4,14 +4,14 @@ use super::cells::{Cell, NONE};
 use super::frames;
 use super::looked::Looked;
 use crate::base::pixels::encode;
-use crate::layers::mesh::slot::Place;
+use crate::layers::mesh::slot::SurfacePoint;
 use crate::layers::parts::readout::{Entry, Value};
 
 /// The least share of a view that is told.
 const LEAST_SHARE: f64 = 0.0005;
 
 /// What a pixel shows of the map: its depth, its cell, from where it is looked at, and which views are seen.
-pub fn entry(looked: &Looked, place: &Place) -> Option<Entry> {
+pub fn entry(looked: &Looked, place: &SurfacePoint) -> Option<Entry> {
     let map = looked.map();
     let spot = looked.spots()(place)?;
     let mut shares = vec![0.0; map.wanted.views.len()];

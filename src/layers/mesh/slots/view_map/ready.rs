@@ -16,7 +16,7 @@ use crate::base::pixels::Linear;
 use crate::base::problem::Problem;
 use crate::base::reduce::Reduced;
 use crate::layers::mesh::pose::Placed;
-use crate::layers::mesh::slot::{Look, Place, Reader, ReadySurface, StillSurface};
+use crate::layers::mesh::slot::{Look, Reader, ReadySurface, StillSurface, SurfacePoint};
 use crate::layers::parts::bundle::Sink;
 use crate::layers::parts::marks::{Mark, View};
 use crate::layers::parts::moment::Moment;
@@ -154,7 +154,7 @@ impl StillSurface for Looked<'_> {
         false
     }
 
-    fn told(&self, place: &Place) -> Option<Entry> {
+    fn told(&self, place: &SurfacePoint) -> Option<Entry> {
         probe::entry(self, place)
     }
 

@@ -21,7 +21,7 @@ use crate::layers::mesh::model::MeshLayer;
 use crate::layers::mesh::synth::Synth;
 use crate::layers::parts::materials::Materials;
 use crate::layers::parts::moment::Moment;
-use crate::layers::parts::readout::{Entry, Value as Told};
+use crate::layers::parts::readout::{Entry, Value as EntryValue};
 use crate::layers::ready::Making;
 use crate::layers::space::eye::Eye;
 use crate::layers::space::raster::NONE;
@@ -399,12 +399,12 @@ fn the_probe_tells_why_there_is_ink() {
     let moment = moment(DVec3::Z, 64);
     let read = layer.probe(&making, None, (20, 30), &moment).unwrap().unwrap();
     let rows = |key: &str| match entry(&read.entries, key) {
-        Told::Items(items) => items.clone(),
+        EntryValue::Items(items) => items.clone(),
         other => panic!("{other:?}"),
     };
     let number = |entries: &[Entry], key: &str| match entry(entries, key) {
-        Told::Number(number) => *number,
-        Told::Index(index) => *index as f64,
+        EntryValue::Number(number) => *number,
+        EntryValue::Index(index) => *index as f64,
         other => panic!("{key}: {other:?}"),
     };
     let synth = synth(&plane(4), &json!({ "style": "hatching" }));
@@ -413,12 +413,12 @@ fn the_probe_tells_why_there_is_ink() {
     assert_eq!((number(&noises[0], "x") as f32, noises.len(), marks.len()), (x, 3, 4));
     assert!(number(&noises[0], "impulses") > 5.0 && number(&noises[0], "factor") > 0.0, "{noises:?}");
     assert!(number(&noises[0], "triangle") < 32.0 && (0.0..180.0).contains(&number(&noises[0], "angle")));
-    assert_eq!(*entry(&marks[3], "share"), Told::Of(None), "an outline has none");
-    let inked = marks.iter().find(|mark| matches!(entry(mark, "threshold"), Told::Number(_))).unwrap();
+    assert_eq!(*entry(&marks[3], "share"), EntryValue::Of(None), "an outline has none");
+    let inked = marks.iter().find(|mark| matches!(entry(mark, "threshold"), EntryValue::Number(_))).unwrap();
     assert!(number(inked, "share") > 0.0 && (0.0..=1.0).contains(&number(inked, "covered")));
     assert!((0.0..=1.0).contains(&number(&read.entries, "tone")));
 }
 
-fn entry<'a>(entries: &'a [Entry], key: &str) -> &'a Told {
+fn entry<'a>(entries: &'a [Entry], key: &str) -> &'a EntryValue {
     &entries.iter().find(|entry| entry.key == key).unwrap().value
 }
