@@ -78,7 +78,7 @@ pub fn moved(state: &State, document: &Document, pointer: &str) -> Option<Edit> 
 }
 
 /// The place under the cursor to which [`moved`] brings what is at `pointer`, and the field that has it.
-pub fn under(state: &State, document: &Document, pointer: &str) -> Option<Place> {
+pub fn under(state: &State, document: &Document, pointer: &str) -> Option<InSpace> {
     let (field, own) = place(state, document, pointer)?;
     let beside = selected(state).map_or(own, |(_, (_, at))| at);
     let depth = Some(-eye(state).ok()?.seen(beside).z).filter(|depth| *depth >= NEAR_M)?;
