@@ -175,6 +175,46 @@ fn what_is_drawn_on_a_model_is_compared_side_by_side() {
     assert!(why.contains(".png, not .exr"), "{why}");
 }
 
+/// What is run, part of what it says, and whether it succeeds.
+const TOLD: &[(&[&str], &str, bool)] = &[
+    (&["new", "broken.obj"], "broken.obj: line 1", false),
+    (&["new", "no.obj"], "no.obj: there is no such file", false),
+    (&["new", "lost.gltf"], "lost.gltf: its buffer lost.bin: there is no such file", false),
+    (&["new", "a.ply"], "a.ply: is a PLY mesh, which Plica does not read (export it as .glb or .obj", false),
+    (&["new", "b.STL"], "b.STL: is an STL mesh, which Plica does not read", false),
+    (&["new", "huge.obj"], "huge.obj: its coordinates reach 1e30 m, at most 1e8 m can be seen (scale it down", false),
+    (&["new", "from/far.gltf"], "../square.bin, which is not in the model's folder (give --allow-outside", false),
+    (
+        &["new", "from/far.gltf", "--allow-outside", "-o", "to/far.plica.json"],
+        "names ../square.bin, which is not in its folder and cannot be copied with it (make the scene beside it)",
+        false,
+    ),
+    (&["new", "from/far.gltf", "--allow-outside"], "the scene needs --allow-outside wherever", true),
+    (&["check", "from/far.plica.json"], "1 error", false),
+    (&["check", "from/far.plica.json", "--allow-outside"], "no problems", true),
+    (&["new", "from/out.gltf"], "its picture is not shown: out.gltf: has a part at ../cat.png", true),
+    (
+        &["new", "from/out.gltf", "--allow-outside", "-o", "from/seen.plica.json"],
+        "the scene needs --allow-outside wherever",
+        true,
+    ),
+    (
+        &["new", "from/unwrapped.gltf"],
+        "its picture is not shown: the mesh has no texture coordinates (unwrap it)",
+        true,
+    ),
+    (&["check", "flat.obj"], "flat.obj: is a model, not a scene (plica edit flat.obj makes a scene of it)", false),
+    (&["render", "cat.png", "-o", "x.png"], "cat.png: is a picture, not a scene (plica edit cat.png", false),
+    (&["new", "flat0.obj"], "nothing of the mesh \"flat0\" is seen: none of its triangles has an area", true),
+    (&["new", "from/bare.gltf"], "from/bare.gltf: its picture is not shown: gone.png: there is no such file", true),
+    (&["new", "cat.obj"], "cat.obj: is a PNG picture, not a mesh (rename it if it is to be shown as a picture;", false),
+    (&["new", "dir.obj"], "dir.obj: is a folder, not a model (name the model in it)", false),
+    (&["new", "flat.obj", "./flat.obj"], "./flat.obj: is named twice (name it once", false),
+    (&["new", "flatt.glb"], "flatt.glb: there is no such file (did you mean flat.obj?)", false),
+    (&["new", "notez.obj"], "notez.obj: there is no such file (put it there, or mend the name)", false),
+    (&["new", "notes.md"], "a model (.obj, .glb, .gltf) or a clip (falls/%04d.jpg, a folder of numbered", false),
+];
+
 #[test]
 fn what_of_a_model_cannot_be_read_is_told() {
     let folder = folder();
@@ -195,53 +235,8 @@ fn what_of_a_model_cannot_be_read_is_told() {
     std::fs::write(at("a.ply"), "ply\nformat ascii 1.0\n").unwrap();
     std::fs::write(at("b.STL"), [0; 84]).unwrap();
     std::fs::write(at("huge.obj"), "v 0 0 0\nv 1e30 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
-    for (args, told, succeeds) in [
-        (&["new", "broken.obj"][..], "broken.obj: line 1", false),
-        (&["new", "no.obj"], "no.obj: there is no such file", false),
-        (&["new", "lost.gltf"], "lost.gltf: its buffer lost.bin: there is no such file", false),
-        (&["new", "a.ply"], "a.ply: is a PLY mesh, which Plica does not read (export it as .glb or .obj", false),
-        (&["new", "b.STL"], "b.STL: is an STL mesh, which Plica does not read", false),
-        (
-            &["new", "huge.obj"],
-            "huge.obj: its coordinates reach 1e30 m, at most 1e8 m can be seen (scale it down",
-            false,
-        ),
-        (&["new", "from/far.gltf"], "../square.bin, which is not in the model's folder (give --allow-outside", false),
-        (
-            &["new", "from/far.gltf", "--allow-outside", "-o", "to/far.plica.json"],
-            "names ../square.bin, which is not in its folder and cannot be copied with it (make the scene beside it)",
-            false,
-        ),
-        (&["new", "from/far.gltf", "--allow-outside"], "the scene needs --allow-outside wherever", true),
-        (&["check", "from/far.plica.json"], "1 error", false),
-        (&["check", "from/far.plica.json", "--allow-outside"], "no problems", true),
-        (&["new", "from/out.gltf"], "its picture is not shown: out.gltf: has a part at ../cat.png", true),
-        (
-            &["new", "from/out.gltf", "--allow-outside", "-o", "from/seen.plica.json"],
-            "the scene needs --allow-outside wherever",
-            true,
-        ),
-        (
-            &["new", "from/unwrapped.gltf"],
-            "its picture is not shown: the mesh has no texture coordinates (unwrap it)",
-            true,
-        ),
-        (&["check", "flat.obj"], "flat.obj: is a model, not a scene (plica edit flat.obj makes a scene of it)", false),
-        (&["render", "cat.png", "-o", "x.png"], "cat.png: is a picture, not a scene (plica edit cat.png", false),
-        (&["new", "flat0.obj"], "nothing of the mesh \"flat0\" is seen: none of its triangles has an area", true),
-        (&["new", "from/bare.gltf"], "from/bare.gltf: its picture is not shown: gone.png: there is no such file", true),
-        (
-            &["new", "cat.obj"],
-            "cat.obj: is a PNG picture, not a mesh (rename it if it is to be shown as a picture;",
-            false,
-        ),
-        (&["new", "dir.obj"], "dir.obj: is a folder, not a model (name the model in it)", false),
-        (&["new", "flat.obj", "./flat.obj"], "./flat.obj: is named twice (name it once", false),
-        (&["new", "flatt.glb"], "flatt.glb: there is no such file (did you mean flat.obj?)", false),
-        (&["new", "notez.obj"], "notez.obj: there is no such file (put it there, or mend the name)", false),
-        (&["new", "notes.md"], "a model (.obj, .glb, .gltf) or a clip (falls/%04d.jpg, a folder of numbered", false),
-    ] {
-        let (_, messages) = plica(folder.path(), args, succeeds);
+    for (args, told, succeeds) in TOLD {
+        let (_, messages) = plica(folder.path(), args, *succeeds);
         assert!(messages.contains(told), "{args:?}: {messages}");
     }
     assert_eq!(

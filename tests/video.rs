@@ -184,6 +184,25 @@ fn of_clip(clip: &str) -> String {
     )
 }
 
+/// Clips, and the frames of the video that are shown of each.
+const SHOWN: [(&str, [usize; 6]); 3] = [
+    (r#"{ "path": "v.mkv", "fps": 10 }"#, [0, 1, 2, 3, 4, 5]),
+    (r#"{ "path": "v.mkv", "fps": 10, "first": 2, "count": 3 }"#, [2, 3, 4, 2, 3, 4]),
+    (r#"{ "path": "v.mkv", "fps": 5, "first": 4 }"#, [4, 4, 5, 5, 4, 4]),
+];
+
+/// Clips of which frames cannot be shown, where programs are found, and what is said.
+const TOLD: [(&str, Option<&str>, &str); 8] = [
+    (r#"{ "path": "v.mkv" }"#, Some(""), "v.mkv: ffmpeg reads videos, and there is none on the PATH (install ffmpeg"),
+    (r#"{ "path": "no.mp4" }"#, None, "no.mp4: ffmpeg: "),
+    (r#"{ "path": "list.mp4" }"#, None, "list.mp4: ffmpeg: it is no video that is in one file (copy it again"),
+    (r#"{ "path": "cat.png" }"#, Some(""), "cat.png: is a PNG picture, not a video (a clip is made of numbered"),
+    (r#"{ "path": "gone.mp4" }"#, None, "gone.mp4: there is no such file"),
+    (r#"{ "path": "v.mkv", "first": 6 }"#, None, "v.mkv: has no frame 6 (lower first)"),
+    (r#"{ "path": "v.mkv", "first": 4, "count": 3 }"#, None, "v.mkv: has 2 frames from number 4 on, and 3 are wanted"),
+    (r#"{ "path": "v.mkv" } "#, None, "v.mkv: its frames have 2048 pixels or more together, at most 2000 are"),
+];
+
 #[test]
 fn a_video_is_a_clip_and_is_decoded_once() {
     if !has_ffmpeg("ffv1") {
@@ -210,12 +229,7 @@ fn a_video_is_a_clip_and_is_decoded_once() {
         command.output().unwrap()
     };
     let write = |clip: &str| fs::write(folder.path().join("s.plica.json"), of_clip(clip)).unwrap();
-    // The clip, and the frames of the video that are shown.
-    for (clip, frames) in [
-        (r#"{ "path": "v.mkv", "fps": 10 }"#, [0, 1, 2, 3, 4, 5]),
-        (r#"{ "path": "v.mkv", "fps": 10, "first": 2, "count": 3 }"#, [2, 3, 4, 2, 3, 4]),
-        (r#"{ "path": "v.mkv", "fps": 5, "first": 4 }"#, [4, 4, 5, 5, 4, 4]),
-    ] {
+    for (clip, frames) in SHOWN {
         write(clip);
         // The second time, there is no ffmpeg to decode it again.
         for path in [None, Some("")] {
@@ -227,24 +241,7 @@ fn a_video_is_a_clip_and_is_decoded_once() {
             }
         }
     }
-    for (clip, path, said) in [
-        (
-            r#"{ "path": "v.mkv" }"#,
-            Some(""),
-            "v.mkv: ffmpeg reads videos, and there is none on the PATH (install ffmpeg",
-        ),
-        (r#"{ "path": "no.mp4" }"#, None, "no.mp4: ffmpeg: "),
-        (r#"{ "path": "list.mp4" }"#, None, "list.mp4: ffmpeg: it is no video that is in one file (copy it again"),
-        (r#"{ "path": "cat.png" }"#, Some(""), "cat.png: is a PNG picture, not a video (a clip is made of numbered"),
-        (r#"{ "path": "gone.mp4" }"#, None, "gone.mp4: there is no such file"),
-        (r#"{ "path": "v.mkv", "first": 6 }"#, None, "v.mkv: has no frame 6 (lower first)"),
-        (
-            r#"{ "path": "v.mkv", "first": 4, "count": 3 }"#,
-            None,
-            "v.mkv: has 2 frames from number 4 on, and 3 are wanted",
-        ),
-        (r#"{ "path": "v.mkv" } "#, None, "v.mkv: its frames have 2048 pixels or more together, at most 2000 are"),
-    ] {
+    for (clip, path, said) in TOLD {
         write(clip);
         let limit = if clip.ends_with(' ') { " --limit clip=2000" } else { "" };
         let line = if limit.is_empty() {

@@ -270,9 +270,31 @@ fn brief_number(number: f64) -> String {
 mod tests {
     use super::*;
 
+    fn entry(key: &'static str, label: &'static str, value: Value) -> Entry {
+        Entry { key, label, value }
+    }
+
+    fn sprites() -> Vec<Entry> {
+        let sprite = |age, at: [f64; 2], level, color| {
+            vec![
+                entry("age", "age", Value::Number(age)),
+                entry("at", "at", Value::Coordinates(at.to_vec(), "m")),
+                entry("level", "", Value::Index(level)),
+                entry("color", "color", Value::Color(color)),
+            ]
+        };
+        let items =
+            vec![sprite(0.12345, [-0.5, 12.25], 1, [255, 0, 16, 128]), sprite(2.0, [1.0, 250.04], 0, [1, 2, 3, 4])];
+        vec![
+            entry("count", "sprites", Value::Index(2)),
+            entry("listed", "", Value::Index(2)),
+            entry("sprites", "the oldest first", Value::Items(items)),
+            entry("none", "none", Value::Items(Vec::new())),
+        ]
+    }
+
     #[test]
     fn a_read_out_as_json_and_in_words() {
-        let entry = |key, label, value| Entry { key, label, value };
         let read = |on| {
             let entries = vec![
                 entry("zone", "zone", Value::Of(Some("eye".into()))),
@@ -285,23 +307,7 @@ mod tests {
             vec![ReadOut { entries, axis: None }]
         };
         let water = ReadOut { entries: vec![entry("layer", "layer", Value::Of(Some("falls".into())))], axis: None };
-        let sprite = |age, at: [f64; 2], level, color| {
-            vec![
-                entry("age", "age", Value::Number(age)),
-                entry("at", "at", Value::Coordinates(at.to_vec(), "m")),
-                entry("level", "", Value::Index(level)),
-                entry("color", "color", Value::Color(color)),
-            ]
-        };
-        let items =
-            vec![sprite(0.12345, [-0.5, 12.25], 1, [255, 0, 16, 128]), sprite(2.0, [1.0, 250.04], 0, [1, 2, 3, 4])];
-        let sprites = vec![
-            entry("count", "sprites", Value::Index(2)),
-            entry("listed", "", Value::Index(2)),
-            entry("sprites", "the oldest first", Value::Items(items)),
-            entry("none", "none", Value::Items(Vec::new())),
-        ];
-        let sprites = vec![ReadOut { entries: sprites, axis: None }];
+        let sprites = vec![ReadOut { entries: sprites(), axis: None }];
         let outside = vec![ReadOut { entries: vec![entry("zone", "zone", Value::Of(None))], axis: None }];
         for (read, json, words) in [
             (

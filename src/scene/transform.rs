@@ -87,13 +87,23 @@ mod tests {
         Affine::new([0.0, -1.0, 1.0, 0.0, 0.0, 0.0])
     }
 
+    fn mirror() -> Affine {
+        Affine::new([-1.0, 0.0, 0.0, 1.0, 100.0, 0.0])
+    }
+
+    /// What each becomes by a transform.
+    fn go_there(cases: &[(&str, Value, Affine, Value)]) {
+        for (path, value, by, expected) in cases {
+            let (new, _) = transformed(path, value, *by).unwrap().unwrap();
+            assert_eq!(new, *expected, "{value}");
+        }
+    }
+
     #[test]
-    fn everything_with_a_place_goes_there() {
-        let mirror = Affine::new([-1.0, 0.0, 0.0, 1.0, 100.0, 0.0]);
-        let double = Affine::scale(2.0);
+    fn outlines_and_what_they_are_made_of_go_there() {
         let eighth = Affine::new([0.6, -0.8, 0.8, 0.6, 0.0, 0.0]);
         let rectangle = json!({ "kind": "rectangle", "x": 20, "y": 45, "width": 30, "height": 10 });
-        for (path, value, by, expected) in [
+        go_there(&[
             (
                 "/zones/0/outline",
                 rectangle.clone(),
@@ -103,7 +113,7 @@ mod tests {
             (
                 "/zones/0/outline",
                 rectangle.clone(),
-                mirror,
+                mirror(),
                 json!({ "kind": "rectangle", "x": 50, "y": 45, "width": 30, "height": 10 }),
             ),
             (
@@ -118,13 +128,19 @@ mod tests {
                 quarter(),
                 json!({ "kind": "ellipse", "center": [20, -10], "radii": [5, 3] }),
             ),
-            ("/zones/0/outline/points/2", json!([10, 20]), mirror, json!([90, 20])),
+            ("/zones/0/outline/points/2", json!([10, 20]), mirror(), json!([90, 20])),
             (
                 "/zones/0/outline/nodes/1",
                 json!({ "at": [10, 20], "in": [1, 2] }),
-                mirror,
+                mirror(),
                 json!({ "at": [90, 20], "in": [-1, 2] }),
             ),
+        ]);
+    }
+
+    #[test]
+    fn tools_and_zones_go_there() {
+        go_there(&[
             (
                 "/zones/0/motion/0",
                 json!({ "tool": "point", "at": [10, 20], "jump": [3, 4] }),
@@ -134,19 +150,19 @@ mod tests {
             (
                 "/zones/0/motion/0",
                 json!({ "tool": "lasso", "vertices": [{ "from": [1, 2], "to": [3, 4] }] }),
-                double,
+                Affine::scale(2.0),
                 json!({ "tool": "lasso", "vertices": [{ "from": [2, 4], "to": [6, 8] }] }),
             ),
             (
                 "/zones/0/motion/0",
                 json!({ "tool": "curve", "frame": "curve", "samples": 2, "nodes": [{ "at": [1, 2] }], "jumps": [{ "along": 0, "jump": [3, 4] }] }),
-                mirror,
+                mirror(),
                 json!({ "tool": "curve", "frame": "curve", "samples": 2, "nodes": [{ "at": [99, 2] }], "jumps": [{ "along": 0, "jump": [3, -4] }] }),
             ),
             (
                 "/zones/0/motion/0",
                 json!({ "tool": "rotate", "center": [1, 2], "degrees": 15 }),
-                mirror,
+                mirror(),
                 json!({ "tool": "rotate", "center": [99, 2], "degrees": -15 }),
             ),
             (
@@ -158,7 +174,7 @@ mod tests {
             (
                 "/zones/0/motion/0",
                 json!({ "tool": "shear", "center": [1, 2], "factor": [0.5, 0] }),
-                mirror,
+                mirror(),
                 json!({ "tool": "shear", "center": [99, 2], "factor": [-0.5, 0] }),
             ),
             (
@@ -166,15 +182,12 @@ mod tests {
                 json!({ "name": "a", "outline": { "kind": "polygon", "points": [[1, 2]] }, "feather": 3,
                 "interpolation": { "method": "modified-shepard", "radius": 60 }, "position": { "function": "keyframes", "points": [[0, 1]] },
                 "motion": [{ "tool": "still-border", "spacing": 8 }, { "tool": "translate", "by": [1, 2] }] }),
-                double,
+                Affine::scale(2.0),
                 json!({ "name": "a", "outline": { "kind": "polygon", "points": [[2, 4]] }, "feather": 6,
                 "interpolation": { "method": "modified-shepard", "radius": 120 }, "position": { "function": "keyframes", "points": [[0, 1]] },
                 "motion": [{ "tool": "still-border", "spacing": 16 }, { "tool": "translate", "by": [2, 4] }] }),
             ),
-        ] {
-            let (new, _) = transformed(path, &value, by).unwrap().unwrap();
-            assert_eq!(new, expected, "{value}");
-        }
+        ]);
     }
 
     #[test]

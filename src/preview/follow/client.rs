@@ -12,7 +12,7 @@ use crate::files::materials::Watched;
 use crate::files::watch::Watch;
 use crate::files::{self, Options};
 use crate::preview::wire::handshake;
-use crate::preview::wire::message::{FromEditor, Role, ToEditor};
+use crate::preview::wire::message::{FromEditor, Meaning, OfTheLink, Role, ToEditor};
 
 /// How often to look for an editor while there is none.
 const LOOK: Duration = Duration::from_millis(250);
@@ -104,24 +104,24 @@ impl Client {
 
     /// Does what the editor says; returns whether that was the end.
     fn take(&mut self, said: FromEditor) -> Outcome<bool> {
-        let patched = said.is_of_the_document();
+        let said = said.meaning();
+        let patched = match said {
+            Meaning::Patch(..) | Meaning::Scene(..) => true,
+            Meaning::Link(_) | Meaning::Windows(_) | Meaning::Nothing => false,
+        };
         match self.talk.take(said)? {
-            Some(bye @ FromEditor::Bye(_)) if self.joined => {
-                self.talk.pass_on(bye)?;
+            Some(OfTheLink::Bye(reason)) if self.joined => {
+                self.talk.pass_on(FromEditor::Bye(reason))?;
                 return Ok(true);
             }
-            Some(FromEditor::Bye(reason)) => {
+            Some(OfTheLink::Bye(reason)) => {
                 self.talk.leave();
                 self.load()?;
                 self.talk.notice(format!("{reason}; following the file"))?;
             }
-            // The talk has done these, or they are for another machine or a script.
-            Some(FromEditor::Hello { .. } | FromEditor::Patch { .. } | FromEditor::Scene { .. }) => {}
-            Some(FromEditor::Selection(_) | FromEditor::Transport(_) | FromEditor::Look { .. }) => {}
-            Some(FromEditor::View(_) | FromEditor::Views(_)) => {}
-            Some(FromEditor::Images(_) | FromEditor::Piece { .. }) => {}
-            Some(FromEditor::Notice(_) | FromEditor::Problems(_)) => {}
-            Some(FromEditor::Alive | FromEditor::Edited(_)) | None => {}
+            // These are for a window on another machine.
+            Some(OfTheLink::Images(_) | OfTheLink::Piece(..) | OfTheLink::Notice(_) | OfTheLink::Problems(_)) => {}
+            None => {}
         }
         if patched {
             self.watch()?;

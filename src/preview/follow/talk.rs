@@ -13,7 +13,7 @@ use crate::files::Options;
 use crate::preview::keys::TRY_NOW;
 use crate::preview::wire::connection::{HangUp, Wire};
 use crate::preview::wire::frame;
-use crate::preview::wire::message::{FromEditor, ToEditor};
+use crate::preview::wire::message::{FromEditor, Meaning, OfTheLink, ToEditor};
 use crate::scene::Document;
 use crate::scene::edit::Edit;
 
@@ -170,12 +170,13 @@ impl Talk {
     }
 
     /// Applies what changes the document and passes on what is meant for windows; returns what concerns the link itself.
-    pub fn take(&mut self, said: FromEditor) -> Outcome<Option<FromEditor>> {
+    pub fn take(&mut self, said: Meaning) -> Outcome<Option<OfTheLink>> {
         match said {
-            FromEditor::Patch { from_revision, to_revision, patch } => self.patch(from_revision, to_revision, patch)?,
-            FromEditor::Scene { revision, document } => self.replace(revision, document)?,
-            said if said.is_of_the_link() => return Ok(Some(said)),
-            said => self.pass_on(said)?,
+            Meaning::Patch(from, to, patch) => self.patch(from, to, patch)?,
+            Meaning::Scene(revision, document) => self.replace(revision, document)?,
+            Meaning::Link(said) => return Ok(Some(said)),
+            Meaning::Windows(said) => self.pass_on(said)?,
+            Meaning::Nothing => {}
         }
         Ok(None)
     }

@@ -16,7 +16,7 @@ use crate::preview::follow::talk::{Heard, Outcome, Talk, WindowGone};
 use crate::preview::keys::{KEYS, PLAY, VIEW};
 use crate::preview::views;
 use crate::preview::wire::connection::{ALIVE, HangUp, Wire};
-use crate::preview::wire::message::{FromEditor, ToEditor};
+use crate::preview::wire::message::{FromEditor, OfTheLink, ToEditor};
 use crate::render::shown::Shown;
 
 /// Waits before connecting again, by the number of attempts that failed in a row, in seconds.
@@ -106,30 +106,26 @@ impl Far {
 
     fn take(&mut self, said: FromEditor) -> Outcome {
         let Some(said) = harmless(said) else { return Ok(()) };
-        match self.talk.take(said)? {
-            Some(FromEditor::Images(originals)) => {
+        match self.talk.take(said.meaning())? {
+            Some(OfTheLink::Images(originals)) => {
                 let changed = self.fetch.told(originals);
                 self.fetched(changed)
             }
-            Some(FromEditor::Piece { hash, offset, bytes }) => {
+            Some(OfTheLink::Piece(hash, offset, bytes)) => {
                 let taken = self.fetch.piece(&hash, offset, &bytes, Instant::now());
                 let whole = taken.or_else(|error| self.talk.failed(error).map(|()| true))?;
                 self.fetched(whole)
             }
-            Some(FromEditor::Notice(line)) => {
+            Some(OfTheLink::Notice(line)) => {
                 self.standing = format!("{}: {line}", self.way.address.host);
                 if self.fetch.is_settled() { self.talk.notice(self.standing.clone()) } else { Ok(()) }
             }
-            Some(FromEditor::Problems(problems)) => self.talk.problems(problems),
-            Some(FromEditor::Bye(reason)) => {
+            Some(OfTheLink::Problems(problems)) => self.talk.problems(problems),
+            Some(OfTheLink::Bye(reason)) => {
                 self.leave();
                 self.wait(reason)
             }
-            // The talk has done these, or they answer a script.
-            Some(FromEditor::Hello { .. } | FromEditor::Patch { .. } | FromEditor::Scene { .. }) => Ok(()),
-            Some(FromEditor::Selection(_) | FromEditor::Transport(_) | FromEditor::Look { .. }) => Ok(()),
-            Some(FromEditor::View(_) | FromEditor::Views(_)) => Ok(()),
-            Some(FromEditor::Alive | FromEditor::Edited(_)) | None => Ok(()),
+            None => Ok(()),
         }
     }
 

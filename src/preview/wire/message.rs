@@ -154,30 +154,53 @@ pub enum ToEditor {
     },
 }
 
-impl FromEditor {
-    /// Whether the message concerns the link itself, or is answered differently by different ends of it; all others are
-    /// passed on to windows.
-    pub fn is_of_the_link(&self) -> bool {
-        match self {
-            FromEditor::Hello { .. } | FromEditor::Patch { .. } | FromEditor::Scene { .. } => true,
-            FromEditor::Images(_) | FromEditor::Piece { .. } | FromEditor::Alive => true,
-            FromEditor::Notice(_) | FromEditor::Problems(_) => true,
-            FromEditor::Edited(_) | FromEditor::Bye(_) => true,
-            FromEditor::Selection(_) | FromEditor::Transport(_) | FromEditor::Look { .. } => false,
-            FromEditor::View(_) | FromEditor::Views(_) => false,
-        }
-    }
+/// What a message of the editor is to one who follows it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Meaning {
+    /// A change from one revision of the document to another.
+    Patch(u64, u64, Edit),
+    /// The whole document, of a revision.
+    Scene(u64, Value),
+    /// Something that each end of the link answers in its own way.
+    Link(OfTheLink),
+    /// Something that is passed on to windows as it is.
+    Windows(FromEditor),
+    /// Nothing to be done.
+    Nothing,
+}
+
+/// What each end of the link answers in its own way.
+#[derive(Clone, Debug, PartialEq)]
+pub enum OfTheLink {
+    /// See [`FromEditor::Images`].
+    Images(Vec<Original>),
+    /// See [`FromEditor::Piece`]: the hash, the position, the bytes.
+    Piece(String, u64, Vec<u8>),
+    /// See [`FromEditor::Notice`].
+    Notice(String),
+    /// See [`FromEditor::Problems`].
+    Problems(Vec<Problem>),
+    /// See [`FromEditor::Bye`].
+    Bye(String),
 }
 
 impl FromEditor {
-    /// Whether the message changes the document.
-    pub fn is_of_the_document(&self) -> bool {
+    /// What it is to one who follows the editor.
+    pub fn meaning(self) -> Meaning {
         match self {
-            FromEditor::Patch { .. } | FromEditor::Scene { .. } => true,
-            FromEditor::Hello { .. } | FromEditor::Images(_) | FromEditor::Piece { .. } | FromEditor::Alive => false,
-            FromEditor::Notice(_) | FromEditor::Problems(_) | FromEditor::Edited(_) | FromEditor::Bye(_) => false,
-            FromEditor::Selection(_) | FromEditor::Transport(_) | FromEditor::Look { .. } => false,
-            FromEditor::View(_) | FromEditor::Views(_) => false,
+            FromEditor::Patch { from_revision, to_revision, patch } => {
+                Meaning::Patch(from_revision, to_revision, patch)
+            }
+            FromEditor::Scene { revision, document } => Meaning::Scene(revision, document),
+            FromEditor::Images(originals) => Meaning::Link(OfTheLink::Images(originals)),
+            FromEditor::Piece { hash, offset, bytes } => Meaning::Link(OfTheLink::Piece(hash, offset, bytes)),
+            FromEditor::Notice(line) => Meaning::Link(OfTheLink::Notice(line)),
+            FromEditor::Problems(problems) => Meaning::Link(OfTheLink::Problems(problems)),
+            FromEditor::Bye(reason) => Meaning::Link(OfTheLink::Bye(reason)),
+            FromEditor::Selection(_) | FromEditor::Transport(_) | FromEditor::Look { .. } => Meaning::Windows(self),
+            FromEditor::View(_) | FromEditor::Views(_) => Meaning::Windows(self),
+            // What begins the link is heard before; what scripts are told, windows are not.
+            FromEditor::Hello { .. } | FromEditor::Alive | FromEditor::Edited(_) => Meaning::Nothing,
         }
     }
 

@@ -102,6 +102,22 @@ const COUNTED: &[(&str, &str)] = &[
     ("", "view view-field"),
 ];
 
+/// These go to a row, take so many rows, or round what is visible.
+const USES: [&str; 12] = [
+    "move first",
+    "move last",
+    "select",
+    "yank",
+    "duplicate",
+    "paste",
+    "add",
+    "back",
+    "leave",
+    "cancel",
+    "zoom",
+    "pan",
+];
+
 #[test]
 pub fn every_command_repeats_by_its_count_or_uses_it_or_refuses_it() {
     let mut seen = BTreeSet::new();
@@ -122,22 +138,7 @@ pub fn every_command_repeats_by_its_count_or_uses_it_or_refuses_it() {
         };
         let (once, twice, counted) = (run(1, line), run(2, line), run(1, &format!("2 {line}")));
         assert!(counted != once, "{keys} : {line} ignores its count");
-        // These go to a row, take so many rows, or round what is visible.
-        let uses = [
-            "move first",
-            "move last",
-            "select",
-            "yank",
-            "duplicate",
-            "paste",
-            "add",
-            "back",
-            "leave",
-            "cancel",
-            "zoom",
-            "pan",
-        ];
-        let used = uses.iter().any(|name| line.starts_with(name));
+        let used = USES.iter().any(|name| line.starts_with(name));
         assert!(counted == twice || used, "{line}:\n{counted}\n{twice}");
         let mut words = line.split(' ');
         seen.insert((words.next().unwrap(), words.next().unwrap_or_default()));

@@ -53,6 +53,11 @@ pub fn what_is_selected_is_transformed_in_one_step() {
             json!([[10, 10], [50, 9], [50, 39], [10, 40]]),
         ),
     ]);
+}
+
+#[test]
+pub fn what_cannot_be_transformed_says_why() {
+    let mouth = |line: &str| format!("{MOUTH} : \"{line}\" Enter");
     for (keys, part) in [
         (mouth("mirror"), "mirror takes x, x=X"),
         (mouth("scale 0"), "would leave nothing"),

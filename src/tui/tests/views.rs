@@ -135,6 +135,30 @@ fn what_the_shell_does_is_done_with_the_open_scene() {
     }
 }
 
+/// In select, of the view that is selected there.
+fn points_go_on_the_sphere(state: &mut State) {
+    // The first extreme point makes a ring where the view was gone; the next goes where the cursor is, between its neighbors.
+    let extremes = "/layers/0/surface/views/5/extremes";
+    let before = at(state, extremes);
+    press(state, "a");
+    let ring = json!([[45, 0], [0, 45], [-45, 0], [0, -45]]);
+    assert_eq!(at(state, extremes), json!({ "kind": "points", "points": ring }));
+    show(state);
+    press(state, "2 l 2 k a");
+    let points = at(state, &format!("{extremes}/points"));
+    let new: [f64; 2] = serde_json::from_value(points[1].clone()).unwrap();
+    assert!(points.as_array().unwrap().len() == 5 && new.iter().all(|angle| *angle > 2.0), "{points}");
+    press(state, "h r");
+    let moved: [f64; 2] = serde_json::from_value(at(state, &format!("{extremes}/points/1"))).unwrap();
+    // The sphere is small here: beside it, the place is on its edge.
+    assert!(moved[1] > new[1] + 5.0 && moved[0] > 2.0, "{moved:?} {new:?}");
+    press(state, "s");
+    let blend = at(state, "/layers/0/surface/blend/points/0");
+    assert_eq!(blend["target"], at(state, "/layers/0/surface/views/5/camera/target"));
+    press(state, "u u u u");
+    assert_eq!((at(state, extremes), at(state, "/layers/0/surface/blend")), (before, json!(null)));
+}
+
 #[test]
 pub fn one_paints_in_three_views() {
     let folder = tempfile::tempdir().unwrap();
@@ -181,26 +205,7 @@ pub fn one_paints_in_three_views() {
         })
         .collect();
     assert!(names.len() == 6 && names.contains(&"a"), "all cameras are seen: {names:?}");
-    // The first extreme point makes a ring where the view was gone; the next goes where the cursor is, between its neighbors.
-    let extremes = "/layers/0/surface/views/5/extremes";
-    let before = at(&state, extremes);
-    press(&mut state, "a");
-    let ring = json!([[45, 0], [0, 45], [-45, 0], [0, -45]]);
-    assert_eq!(at(&state, extremes), json!({ "kind": "points", "points": ring }));
-    show(&mut state);
-    press(&mut state, "2 l 2 k a");
-    let points = at(&state, &format!("{extremes}/points"));
-    let new: [f64; 2] = serde_json::from_value(points[1].clone()).unwrap();
-    assert!(points.as_array().unwrap().len() == 5 && new.iter().all(|angle| *angle > 2.0), "{points}");
-    press(&mut state, "h r");
-    let moved: [f64; 2] = serde_json::from_value(at(&state, &format!("{extremes}/points/1"))).unwrap();
-    // The sphere is small here: beside it, the place is on its edge.
-    assert!(moved[1] > new[1] + 5.0 && moved[0] > 2.0, "{moved:?} {new:?}");
-    press(&mut state, "s");
-    let blend = at(&state, "/layers/0/surface/blend/points/0");
-    assert_eq!(blend["target"], at(&state, "/layers/0/surface/views/5/camera/target"));
-    press(&mut state, "u u u u");
-    assert_eq!((at(&state, extremes), at(&state, "/layers/0/surface/blend")), (before, json!(null)));
+    points_go_on_the_sphere(&mut state);
     show(&mut state);
     press(&mut state, "Alt-Right Alt-Up");
     let turned = made(&state);

@@ -209,24 +209,25 @@ fn apart(samples: &[u32], row: usize, count: usize) -> Vec<u8> {
     samples.chunks(row).flat_map(of_row).collect()
 }
 
+/// Photometric, extra samples; the samples that are used, and the extra samples of a file that has no others.
+const KINDS: [(u32, &[u32], &[usize], &[u32]); 11] = [
+    (2, &[0], &[0, 1, 2], &[]),
+    (2, &[0, 0], &[0, 1, 2], &[]),
+    (2, &[2], &[0, 1, 2, 3], &[2]),
+    (2, &[2, 0], &[0, 1, 2, 3], &[2]),
+    (2, &[0, 2], &[0, 1, 2, 4], &[2]),
+    (2, &[1, 0, 0], &[0, 1, 2, 3], &[1]),
+    (1, &[0], &[0], &[]),
+    (1, &[0, 2], &[0, 2], &[2]),
+    (5, &[0], &[0, 1, 2, 3], &[]),
+    (8, &[0], &[0, 1, 2], &[]),
+    (9, &[0, 0], &[0, 1, 2], &[]),
+];
+
 #[test]
 fn extra_samples_are_left_out_after_differences_are_added_up() {
     const SIZE: (u32, u32) = (5, 3);
-    // Photometric, extra samples; the samples that are used, and the extra samples of a file that has no others.
-    let kinds: [(u32, &[u32], &[usize], &[u32]); 11] = [
-        (2, &[0], &[0, 1, 2], &[]),
-        (2, &[0, 0], &[0, 1, 2], &[]),
-        (2, &[2], &[0, 1, 2, 3], &[2]),
-        (2, &[2, 0], &[0, 1, 2, 3], &[2]),
-        (2, &[0, 2], &[0, 1, 2, 4], &[2]),
-        (2, &[1, 0, 0], &[0, 1, 2, 3], &[1]),
-        (1, &[0], &[0], &[]),
-        (1, &[0, 2], &[0, 2], &[2]),
-        (5, &[0], &[0, 1, 2, 3], &[]),
-        (8, &[0], &[0, 1, 2], &[]),
-        (9, &[0, 0], &[0, 1, 2], &[]),
-    ];
-    for (photometric, extra, used, kept) in kinds {
+    for (photometric, extra, used, kept) in KINDS {
         let count = used.len() - kept.len() + extra.len();
         let row = SIZE.0 as usize * count;
         for (bits, compression, predictor) in

@@ -100,60 +100,95 @@ fn tool(old: &Value, to: &str) -> (Vec<Value>, String) {
     (items, lost.unwrap_or_default())
 }
 
+/// A tool that is changed into others.
+fn old(name: &str) -> Value {
+    match name {
+        "point" => json!({ "tool": "point", "at": [50, 40], "jump": [3, -4] }),
+        "curve" => json!({ "tool": "curve", "samples": 3, "nodes": [{ "at": [0, 0] }, { "at": [10, 0] }],
+        "jumps": [{ "along": 0, "jump": [0, 0] }, { "along": 1, "jump": [0, -8] }] }),
+        "turning" => json!({ "tool": "curve", "frame": "curve", "samples": 2,
+        "nodes": [{ "at": [0, 0] }, { "at": [0, 10] }], "jumps": [{ "along": 0, "jump": [2, 1] }] }),
+        "lasso" => json!({ "tool": "lasso", "vertices": [{ "from": [0, 0], "to": [0, 1] },
+        { "from": [3, 0], "to": [3, 2] }, { "from": [3, 4], "to": [3, 4] }] }),
+        "border" => json!({ "tool": "still-border", "spacing": 90 }),
+        "scale" => json!({ "tool": "scale", "center": [10, 20], "factor": [1.5, 0.5] }),
+        "turn" => json!({ "tool": "rotate", "center": [10, 20], "degrees": 90 }),
+        "shear" => json!({ "tool": "shear", "center": [10, 20], "factor": [0.5, 0] }),
+        "move" => json!({ "tool": "translate", "by": [3, -4] }),
+        other => panic!("{other}"),
+    }
+}
+
+fn at(x: f64, y: f64, dx: f64, dy: f64) -> Value {
+    json!({ "tool": "point", "at": [x, y], "jump": [dx, dy] })
+}
+
+fn drag(x: f64, y: f64, dx: f64, dy: f64) -> Value {
+    json!({ "from": [x, y], "to": [x + dx, y + dy] })
+}
+
+fn place(along: f64, dx: f64, dy: f64) -> Value {
+    json!({ "along": along, "jump": [dx, dy] })
+}
+
+/// What tools become, and what is said to be lost.
+fn become_these(cases: &[(&str, &str, Vec<Value>, &str)]) {
+    for (name, to, new, lost) in cases {
+        let (found, told) = tool(&old(name), to);
+        assert_near(&found.clone().into(), &new.clone().into());
+        assert_eq!(told, *lost, "{name} {to}");
+    }
+}
+
 #[test]
-fn what_gives_anchors_keeps_them() {
-    let point = json!({ "tool": "point", "at": [50, 40], "jump": [3, -4] });
-    let curve = json!({ "tool": "curve", "samples": 3, "nodes": [{ "at": [0, 0] }, { "at": [10, 0] }],
-        "jumps": [{ "along": 0, "jump": [0, 0] }, { "along": 1, "jump": [0, -8] }] });
-    let turning = json!({ "tool": "curve", "frame": "curve", "samples": 2,
-        "nodes": [{ "at": [0, 0] }, { "at": [0, 10] }], "jumps": [{ "along": 0, "jump": [2, 1] }] });
-    let lasso = json!({ "tool": "lasso", "vertices": [{ "from": [0, 0], "to": [0, 1] },
-        { "from": [3, 0], "to": [3, 2] }, { "from": [3, 4], "to": [3, 4] }] });
-    let border = json!({ "tool": "still-border", "spacing": 90 });
-    let at = |x: f64, y: f64, dx: f64, dy: f64| json!({ "tool": "point", "at": [x, y], "jump": [dx, dy] });
-    let drag = |x: f64, y: f64, dx: f64, dy: f64| json!({ "from": [x, y], "to": [x + dx, y + dy] });
-    let place = |along: f64, dx: f64, dy: f64| json!({ "along": along, "jump": [dx, dy] });
-    for (old, to, new, lost) in [
+fn what_gives_anchors_becomes_points() {
+    become_these(&[
         (
-            &curve,
+            "curve",
             "point",
             vec![at(0.0, 0.0, 0.0, 0.0), at(5.0, 0.0, 0.0, -4.0), at(10.0, 0.0, 0.0, -8.0)],
             "the curve is now 3 points, one for each anchor",
         ),
         (
-            &turning,
+            "turning",
             "point",
             vec![at(0.0, 0.0, 1.0, 2.0), at(0.0, 10.0, 1.0, 2.0)],
             "the curve is now 2 points, one for each anchor",
         ),
         (
-            &lasso,
+            "lasso",
             "point",
             vec![at(0.0, 0.0, 0.0, 1.0), at(3.0, 0.0, 0.0, 2.0), at(3.0, 4.0, 0.0, 0.0)],
             "the lasso is now 3 points, one for each anchor",
         ),
         (
-            &border,
+            "border",
             "point",
             vec![at(0.0, 0.0, 0.0, 0.0), at(90.0, 0.0, 0.0, 0.0), at(100.0, 80.0, 0.0, 0.0), at(10.0, 80.0, 0.0, 0.0)],
             "the still-border is now 4 points, one for each anchor",
         ),
+    ]);
+}
+
+#[test]
+fn what_gives_anchors_becomes_lassos_and_curves() {
+    become_these(&[
         (
-            &curve,
+            "curve",
             "lasso",
             vec![json!({ "tool": "lasso", "vertices":
                 [drag(0.0, 0.0, 0.0, 0.0), drag(5.0, 0.0, 0.0, -4.0), drag(10.0, 0.0, 0.0, -8.0)] })],
             "the curve's 3 anchors are the vertices",
         ),
         (
-            &point,
+            "point",
             "lasso",
             vec![json!({ "tool": "lasso", "vertices": [drag(25.0, 20.0, 3.0, -4.0), drag(75.0, 20.0, 3.0, -4.0),
                 drag(75.0, 60.0, 3.0, -4.0), drag(25.0, 60.0, 3.0, -4.0)] })],
             "",
         ),
         (
-            &lasso,
+            "lasso",
             "curve",
             vec![json!({ "tool": "curve", "samples": 4,
                 "nodes": [{ "at": [0, 0] }, { "at": [3, 0] }, { "at": [3, 4] }, { "at": [0, 0] }],
@@ -162,112 +197,121 @@ fn what_gives_anchors_keeps_them() {
             "the 4 anchors are now evenly spaced along the curve",
         ),
         (
-            &point,
+            "point",
             "curve",
             vec![json!({ "tool": "curve", "samples": 9, "nodes": [{ "at": [25, 40] }, { "at": [75, 40] }],
                 "jumps": [place(0.0, 3.0, -4.0)] })],
             "",
         ),
-        (&point, "translate", vec![json!({ "tool": "translate", "by": [3, -4] })], ""),
+    ]);
+}
+
+#[test]
+fn what_gives_anchors_loses_them_in_other_tools() {
+    become_these(&[
+        ("point", "translate", vec![json!({ "tool": "translate", "by": [3, -4] })], ""),
         (
-            &curve,
+            "curve",
             "translate",
             vec![json!({ "tool": "translate", "by": [0, -4] })],
             "only the mean of its 3 jump vectors is kept",
         ),
-        (&point, "affine", vec![json!({ "tool": "affine", "matrix": [[1, 0, 3], [0, 1, -4]] })], ""),
+        ("point", "affine", vec![json!({ "tool": "affine", "matrix": [[1, 0, 3], [0, 1, -4]] })], ""),
         (
-            &point,
+            "point",
             "scale",
             vec![json!({ "tool": "scale", "center": [50, 40], "factor": [1, 1] })],
             "its jump vectors are not kept, only their places",
         ),
-        (&lasso, "still-border", vec![json!({ "tool": "still-border", "spacing": 8 })], "nothing of the lasso is kept"),
-        (&border, "field", vec![json!({ "tool": "field", "path": "field.flo" })], "its spacing is not kept"),
-    ] {
-        let (found, told) = tool(old, to);
-        assert_near(&found.clone().into(), &new.into());
-        assert_eq!(told, lost, "{old} {to}");
-    }
+        (
+            "lasso",
+            "still-border",
+            vec![json!({ "tool": "still-border", "spacing": 8 })],
+            "nothing of the lasso is kept",
+        ),
+        ("border", "field", vec![json!({ "tool": "field", "path": "field.flo" })], "its spacing is not kept"),
+    ]);
 }
 
 #[test]
 fn transforms_stay_the_same_map_where_they_can() {
-    let scale = json!({ "tool": "scale", "center": [10, 20], "factor": [1.5, 0.5] });
-    let turn = json!({ "tool": "rotate", "center": [10, 20], "degrees": 90 });
-    let shear = json!({ "tool": "shear", "center": [10, 20], "factor": [0.5, 0] });
-    let move_ = json!({ "tool": "translate", "by": [3, -4] });
-    for (old, to, new, lost) in [
-        (&scale, "affine", json!({ "tool": "affine", "matrix": [[1.5, 0, -5], [0, 0.5, 10]] }), ""),
-        (&turn, "affine", json!({ "tool": "affine", "matrix": [[0, -1, 30], [1, 0, 10]] }), ""),
-        (&shear, "affine", json!({ "tool": "affine", "matrix": [[1, 0.5, -10], [0, 1, 0]] }), ""),
-        (&move_, "affine", json!({ "tool": "affine", "matrix": [[1, 0, 3], [0, 1, -4]] }), ""),
+    become_these(&[
+        ("scale", "affine", vec![json!({ "tool": "affine", "matrix": [[1.5, 0, -5], [0, 0.5, 10]] })], ""),
+        ("turn", "affine", vec![json!({ "tool": "affine", "matrix": [[0, -1, 30], [1, 0, 10]] })], ""),
+        ("shear", "affine", vec![json!({ "tool": "affine", "matrix": [[1, 0.5, -10], [0, 1, 0]] })], ""),
+        ("move", "affine", vec![json!({ "tool": "affine", "matrix": [[1, 0, 3], [0, 1, -4]] })], ""),
         (
-            &scale,
+            "scale",
             "rotate",
-            json!({ "tool": "rotate", "center": [10, 20], "degrees": 0 }),
+            vec![json!({ "tool": "rotate", "center": [10, 20], "degrees": 0 })],
             "no rotate is that scale: jump vectors differ by up to 54.08 px",
         ),
         (
-            &scale,
+            "scale",
             "shear",
-            json!({ "tool": "shear", "center": [10, 20], "factor": [0, 0] }),
+            vec![json!({ "tool": "shear", "center": [10, 20], "factor": [0, 0] })],
             "no shear is that scale: jump vectors differ by up to 54.08 px",
         ),
         (
-            &turn,
+            "turn",
             "scale",
-            json!({ "tool": "scale", "center": [10, 20], "factor": [1, 1] }),
+            vec![json!({ "tool": "scale", "center": [10, 20], "factor": [1, 1] })],
             "no scale is that rotate: jump vectors differ by up to 152.97 px",
         ),
         (
-            &scale,
+            "scale",
             "translate",
-            json!({ "tool": "translate", "by": [20, -10] }),
+            vec![json!({ "tool": "translate", "by": [20, -10] })],
             "no translate is that scale: jump vectors differ by up to 32.02 px",
         ),
+    ]);
+}
+
+#[test]
+fn transforms_are_read_at_the_anchors_of_other_tools() {
+    become_these(&[
         (
-            &scale,
+            "scale",
             "point",
-            json!({ "tool": "point", "at": [10, 20], "jump": [0, 0] }),
+            vec![json!({ "tool": "point", "at": [10, 20], "jump": [0, 0] })],
             "only the jump of the scale at the point is kept",
         ),
-        (&move_, "point", json!({ "tool": "point", "at": [50, 40], "jump": [3, -4] }), ""),
+        ("move", "point", vec![json!({ "tool": "point", "at": [50, 40], "jump": [3, -4] })], ""),
         (
-            &move_,
+            "move",
             "curve",
-            json!({ "tool": "curve", "samples": 9, "nodes": [{ "at": [25, 40] }, { "at": [75, 40] }],
-                "jumps": [{ "along": 0, "jump": [3, -4] }] }),
+            vec![json!({ "tool": "curve", "samples": 9, "nodes": [{ "at": [25, 40] }, { "at": [75, 40] }],
+                "jumps": [{ "along": 0, "jump": [3, -4] }] })],
             "",
         ),
         (
-            &scale,
+            "scale",
             "curve",
-            json!({ "tool": "curve", "samples": 9, "nodes": [{ "at": [25, 40] }, { "at": [75, 40] }],
-                "jumps": [{ "along": 0, "jump": [7.5, -10] }, { "along": 1, "jump": [32.5, -10] }] }),
+            vec![json!({ "tool": "curve", "samples": 9, "nodes": [{ "at": [25, 40] }, { "at": [75, 40] }],
+                "jumps": [{ "along": 0, "jump": [7.5, -10] }, { "along": 1, "jump": [32.5, -10] }] })],
             "only the jumps of the scale along the curve are kept",
         ),
         (
-            &turn,
+            "turn",
             "lasso",
-            json!({ "tool": "lasso", "vertices": [{ "from": [25, 20], "to": [10, 35] },
+            vec![json!({ "tool": "lasso", "vertices": [{ "from": [25, 20], "to": [10, 35] },
                 { "from": [75, 20], "to": [10, 85] }, { "from": [75, 60], "to": [-30, 85] },
-                { "from": [25, 60], "to": [-30, 35] }] }),
+                { "from": [25, 60], "to": [-30, 35] }] })],
             "only the jumps of the rotate at the vertices are kept",
         ),
-    ] {
-        let (found, told) = tool(old, to);
-        assert_near(&found[0], &new);
-        assert_eq!(told, lost, "{old} {to}");
-    }
+    ]);
+}
+
+#[test]
+fn transforms_stay_the_same_through_a_matrix() {
     // To a matrix and back, nothing changes.
-    for old in [&scale, &turn, &shear, &move_] {
-        let (through, _) = tool(old, "affine");
+    for old in ["scale", "turn", "shear", "move"].map(old) {
+        let (through, _) = tool(&old, "affine");
         let (back, told) = tool(&through[0], old["tool"].as_str().unwrap());
         assert_eq!(told, "", "{old}");
         let map = |tool: &Value| crate::layers::folding::anchors::transform(&read::<Tool>(tool).unwrap()).unwrap();
         let there = [(0.0, 0.0), (100.0, 0.0), (0.0, 80.0)].map(kurbo::Point::from);
-        assert!(there.iter().all(|&q| (map(old) * q - map(&back[0]) * q).hypot() < 1e-4), "{old} {back:?}");
+        assert!(there.iter().all(|&q| (map(&old) * q - map(&back[0]) * q).hypot() < 1e-4), "{old} {back:?}");
     }
 }
 

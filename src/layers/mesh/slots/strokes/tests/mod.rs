@@ -112,9 +112,16 @@ fn what_is_not_written_is_told() {
     assert_eq!((found.place_of("cross"), found.place_of("line")), ("/marks/1".into(), "/marks".into()));
 }
 
+fn are_told(cases: &[(Value, &str)]) {
+    for (written, expected) in cases {
+        let found = messages(written.clone());
+        assert!(found.iter().any(|message| message == expected), "{written}\n{expected}\n{found:#?}");
+    }
+}
+
 #[test]
 fn what_is_wrong_is_told_with_its_place_and_the_cure() {
-    for (written, expected) in [
+    are_told(&[
         (json!({ "ink": "red" }), "ink: \"red\" is no color (as #20304a)"),
         (json!({ "ink": "#20304a80" }), "ink: \"#20304a80\" is no color (as #20304a)"),
         (json!({ "tone": { "dark": 0.95 } }), "tone.dark: dark is not below light (0.95 and 0.9) (make it smaller)"),
@@ -134,6 +141,24 @@ fn what_is_wrong_is_told_with_its_place_and_the_cure() {
             json!({ "style": "watercolor", "noises": { "a": { "spacing": 9 } } }),
             "noises.a: warning: no mark is made of the noise \"a\" (name it as the noise of a mark, or remove it)",
         ),
+        (
+            json!({ "direction": { "along": "axis", "axis": [0, 0, 0] } }),
+            "direction.axis: the axis has no direction (make it [0, 1, 0] for strokes that run up and down)",
+        ),
+        (
+            json!({ "noises": { "b": { "direction": { "along": "image" } } } }),
+            "noises.b.direction.image: strokes along an image name none (name an image of the scene; along curvature needs none)",
+        ),
+        (
+            json!({ "style": "none", "ground": "clear", "noises": { "a": {} }, "marks": [{ "name": "p", "kind": "relief", "noise": "a" }] }),
+            "marks: warning: nothing will show: the ground is clear, and no mark is ink or an outline",
+        ),
+    ]);
+}
+
+#[test]
+fn what_is_wrong_with_marks_is_told_with_its_place_and_the_cure() {
+    are_told(&[
         (
             json!({ "marks": [{ "name": "drak", "off": true }] }),
             "marks.0.name: warning: the style has no mark \"drak\" that could be left out (did you mean \"dark\"?)",
@@ -158,22 +183,7 @@ fn what_is_wrong_is_told_with_its_place_and_the_cure() {
             json!({ "marks": [{ "name": "dark" }, { "name": "dark" }] }),
             "marks.1.name: the name \"dark\" is taken (number 0 of the list has it)",
         ),
-        (
-            json!({ "direction": { "along": "axis", "axis": [0, 0, 0] } }),
-            "direction.axis: the axis has no direction (make it [0, 1, 0] for strokes that run up and down)",
-        ),
-        (
-            json!({ "noises": { "b": { "direction": { "along": "image" } } } }),
-            "noises.b.direction.image: strokes along an image name none (name an image of the scene; along curvature needs none)",
-        ),
-        (
-            json!({ "style": "none", "ground": "clear", "noises": { "a": {} }, "marks": [{ "name": "p", "kind": "relief", "noise": "a" }] }),
-            "marks: warning: nothing will show: the ground is clear, and no mark is ink or an outline",
-        ),
-    ] {
-        let found = messages(written.clone());
-        assert!(found.iter().any(|message| message == expected), "{written}\n{expected}\n{found:#?}");
-    }
+    ]);
 }
 
 #[test]
