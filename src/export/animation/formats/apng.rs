@@ -31,6 +31,7 @@ pub fn memory(show: &Show) -> u64 {
 fn header(out: Lent, show: &Show) -> std::result::Result<png::Writer<Lent>, png::EncodingError> {
     still::srgb(out, (show.width, show.height), |encoder| {
         if show.frames > 1 {
+            encoder.set_compression(png::Compression::Balanced); // it is shown as it is, so that its size counts
             encoder.set_animated(show.frames as u32, u32::from(show.once))?;
             encoder.set_frame_delay(show.rate.den as u16, show.rate.num as u16)?;
             encoder.set_blend_op(png::BlendOp::Source)?;

@@ -20,8 +20,9 @@ impl Palette {
     /// The palette for the colors of `frames`, without transparent pixels: the colors themselves if they are few enough.
     pub fn of(frames: &[Frame]) -> Self {
         Palette::from_colors(few(frames).unwrap_or_else(|| {
-            let count = |frame: &Frame| Histogram::of(opaque(frame));
-            frames.par_iter().map(count).reduce(Histogram::default, Histogram::with).palette(Self::MOST)
+            let count = |counted: Histogram, frame: &Frame| counted.and(opaque(frame));
+            let counted = frames.par_iter().fold(Histogram::default, count);
+            counted.reduce(Histogram::default, Histogram::with).palette(Self::MOST)
         }))
     }
 
