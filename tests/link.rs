@@ -106,7 +106,7 @@ fn next<T>(link: &Link, wanted: impl Fn(&Update) -> Option<T>) -> T {
 
 fn next_title(link: &Link) -> (String, u64) {
     next(link, |update| match update {
-        Update::Scene { scene, revision } => Some((scene.title.clone(), *revision)),
+        Update::Scene { document, revision } => Some((document.scene().title.clone(), *revision)),
         _ => None,
     })
 }

@@ -111,7 +111,9 @@ impl Window {
     /// Waits for the scene with this title and answers that it is shown; returns what is loaded of its pictures.
     fn shows(&self, title: &str) -> Materials {
         let (scene, revision) = self.next(|update| match update {
-            Update::Scene { scene, revision } if scene.title == title => Some((scene.clone(), *revision)),
+            Update::Scene { document, revision } if document.scene().title == title => {
+                Some((document.scene().clone(), *revision))
+            }
             _ => None,
         });
         self.link.replies.send(ToEditor::Ack { revision, synth_ms: 1.5 }).unwrap();
@@ -132,7 +134,7 @@ impl Window {
     /// Waits until the picture has this width.
     fn is_wide(&self, width: usize) {
         self.next(|update| match update {
-            Update::Scene { scene, .. } if self.load(scene).pictures["cat"].width() == width => Some(()),
+            Update::Scene { document, .. } if self.load(document.scene()).pictures["cat"].width() == width => Some(()),
             _ => None,
         });
     }
@@ -220,7 +222,7 @@ fn a_lost_link_keeps_the_last_state_and_comes_back() {
     editor.publish(&document, 1, &edit);
     window.next(|update| match update {
         Update::Said(FromEditor::View(name)) => panic!("{name} is switched over"),
-        Update::Scene { scene, .. } if scene.title == "meanwhile" => Some(()),
+        Update::Scene { document, .. } if document.scene().title == "meanwhile" => Some(()),
         _ => None,
     });
     let (document, edit) = titled(&document, "after");

@@ -76,7 +76,7 @@ fn editor_and_window_share_time_point_and_view() {
     for click in [false, true] {
         match click {
             true => drop(display.tool("xdotool", &["click", "1"])),
-            false => view.keys(&["space"]),
+            false => view.keys(&["u"]),
         }
         heard(&replies, |reply| matches!(reply, ToEditor::Command(name) if name == "select-point").then_some(()));
     }

@@ -40,6 +40,7 @@ pub struct Args {
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let options = args.options.options()?;
     let most = usize::try_from(options.limits.texture).unwrap_or(usize::MAX);
+    let shots = shots(&args.scene);
     let (name, link, load) = match args.scene.to_str().filter(|text| text.starts_with(SCHEME)) {
         Some(address) => there(Way::to(Address::parse(address)?, args.remote_plica, &options), context)?,
         None => here(&args.scene, args.joined, options)?,
@@ -47,12 +48,19 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     context.check_cancelled()?;
     window::run(window::Setup {
         // The editor reports problems itself.
-        manner: window::Manner { name, most, takes_keyboard: !args.joined, complains: !args.joined },
+        manner: window::Manner { name, shots, most, takes_keyboard: !args.joined, complains: !args.joined },
         updates: link.updates,
         replies: link.replies,
         cancel: context.cancel.clone(),
         load,
     })
+}
+
+/// What the names of shots begin with: they lie beside the scene, or here if that is on another machine.
+fn shots(scene: &Path) -> PathBuf {
+    let name = scene.file_name().unwrap_or_default().to_string_lossy();
+    let stem = [".plica.json", ".json"].into_iter().find_map(|end| name.strip_suffix(end)).unwrap_or(&name);
+    if scene.to_string_lossy().starts_with(SCHEME) { stem.into() } else { scene.with_file_name(stem) }
 }
 
 type Source = (String, Link, window::Load);

@@ -10,6 +10,7 @@ mod document;
 pub mod edit;
 pub mod field;
 mod follow;
+pub mod grips;
 pub mod history;
 pub mod insert;
 pub mod json;

@@ -89,6 +89,11 @@ impl Preview {
         self.say(FromEditor::Selection(pointer));
     }
 
+    /// The cursor of the picture is there; `None` while something else has the focus.
+    pub fn cursor(&self, at: Option<(f64, f64)>) {
+        self.say(FromEditor::Cursor(at));
+    }
+
     /// The animation was started or stopped, or moved, or plays at another speed. What the windows know already is not said
     /// again.
     pub fn transport(&self, transport: Transport) {

@@ -1,12 +1,11 @@
 //! Updates of a scene that is followed, and how they become what a window shows.
 
-use std::sync::Arc;
 use std::sync::mpsc::Sender;
 
 use crate::preview::views::Views;
 use crate::preview::wire::message::FromEditor;
+use crate::scene::Document;
 use crate::scene::edit::Edit;
-use crate::scene::{Document, Scene};
 
 /// What reaches a window, from the editor that has the scene open or from the file.
 #[derive(Clone, Debug)]
@@ -16,7 +15,7 @@ pub enum Update {
     /// [`ToEditor::Ack`]: crate::preview::wire::message::ToEditor::Ack
     Scene {
         /// The scene.
-        scene: Arc<Scene>,
+        document: Document,
         /// Its revision in the editor; the number of loads if the file is followed.
         revision: u64,
     },
@@ -57,11 +56,10 @@ pub(in crate::preview) fn window_sink(updates: Sender<Update>) -> Sink {
         let say = |message| send(Update::Said(message));
         match news {
             News::Document { document, revision, .. } => {
-                let scene = document.scene().clone();
-                shown = Some((scene.clone(), revision));
-                send(Update::Scene { scene, revision })
+                shown = Some((document.clone(), revision));
+                send(Update::Scene { document, revision })
             }
-            News::Files => shown.clone().is_none_or(|(scene, revision)| send(Update::Scene { scene, revision })),
+            News::Files => shown.clone().is_none_or(|(document, revision)| send(Update::Scene { document, revision })),
             News::Said(FromEditor::Views(list)) => {
                 views.catch_up(&list).into_iter().all(|name| say(FromEditor::View(name)))
             }

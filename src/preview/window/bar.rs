@@ -8,6 +8,7 @@ use super::state::{BAR_PX, State};
 use super::stroke::Color;
 use super::style::{ACCENT, DIM, MARGIN_PX, PANEL, RAIL, TEXT, TEXT_PX, WARNING};
 use super::text::Letters;
+use super::transport::Part;
 use crate::base::number::rounded;
 
 const GROUND: Color = [28, 31, 37, 255];
@@ -57,6 +58,7 @@ pub fn draw(canvas: &mut Canvas, state: &State, letters: &Letters) {
     let knob = Point::new(rail.x0 + rail.width() * share, rail.center().y);
     canvas.rect(rail, corner, RAIL);
     canvas.rect(Rect::new(rail.x0, rail.y0, knob.x, rail.y1), corner, ACCENT);
+    part(canvas, state, rail);
     canvas.disc(knob, 4.0 * scale, ACCENT);
     let height = TEXT_PX * scale;
     let y = area.height + (BAR_PX - 7.0 - TEXT_PX) * scale;
@@ -68,6 +70,21 @@ pub fn draw(canvas: &mut Canvas, state: &State, letters: &Letters) {
     canvas.text(&letters.line(&right, height), Point::new(right_at, y), DIM);
     if room > 2.0 * height && !is_above {
         canvas.text(&letters.within(&said, height, room), Point::new(said_at, y), color);
+    }
+}
+
+/// The ends of what is played, if that is a part.
+fn part(canvas: &mut Canvas, state: &State, rail: Rect) {
+    let ends = match state.transport.part {
+        Part::All => [None; 2],
+        Part::From(frame) => [Some(frame), None],
+        Part::Between(first, last) => [Some(first), Some(last)],
+    };
+    let last = (state.timeline.frames() as f64 - 1.0).max(1.0);
+    for frame in ends.into_iter().flatten() {
+        let x = rail.x0 + rail.width() * (frame / last).min(1.0);
+        let half = 1.0 * state.scale;
+        canvas.rect(Rect::new(x - half, rail.y0 - 3.0 * half, x + half, rail.y1 + 3.0 * half), 0.0, TEXT);
     }
 }
 

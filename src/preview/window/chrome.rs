@@ -1,21 +1,26 @@
 //! What stands around the picture and over it that is not part of the scene: the bar, lists, legends, the border of before and
 //! after. No two of these overlap.
 
-use kurbo::{Point, Vec2};
+use kurbo::{Point, Rect, Vec2};
 
 use super::canvas::Canvas;
 use super::state::{Panel, State};
+use super::stroke::Color;
 use super::style::{ACCENT, TEXT};
 use super::text::Letters;
 use super::{bar, legend, panel, problems};
 use crate::base::maths::{TAU, cos, sin};
+use crate::layers::parts::marks::SELECTED_GROWTH;
 use crate::preview::keys::{KEYS, VIEW};
 
 /// Draws all of it.
 pub fn draw(state: &State, letters: &Letters) -> Canvas {
     let mut canvas = Canvas::default();
     border(&mut canvas, state);
-    marked(&mut canvas, state);
+    grips(&mut canvas, state);
+    band(&mut canvas, state);
+    cross(&mut canvas, state, state.cursor, TEXT);
+    cross(&mut canvas, state, state.marked, ACCENT);
     dragged(&mut canvas, state);
     let free = problems::draw(&mut canvas, state, letters);
     let free = bar::whole(&mut canvas, state, letters, free);
@@ -48,18 +53,50 @@ fn border(canvas: &mut Canvas, state: &State) {
     });
 }
 
-/// A cross at the point that was marked last.
-fn marked(canvas: &mut Canvas, state: &State) {
-    let Some(at) = state.marked else { return };
+/// A cross at a place of the picture: the point that was marked last, or the cursor of the editor.
+fn cross(canvas: &mut Canvas, state: &State, at: Option<Point>, color: Color) {
+    let Some(at) = at else { return };
     let (at, scale) = (state.viewport.screen_from_image(at, state.area()), state.scale);
     canvas.with_halo(|c| {
         for way in [Vec2::new(1.0, 0.0), Vec2::new(0.0, 1.0), Vec2::new(-1.0, 0.0), Vec2::new(0.0, -1.0)] {
-            c.line(at + way * 3.0 * scale, at + way * 11.0 * scale, 1.5 * scale, ACCENT);
+            c.line(at + way * 3.0 * scale, at + way * 11.0 * scale, 1.5 * scale, color);
         }
     });
 }
 
-/// A ring where what is dragged would go.
+/// Half the side of a grip, in logical pixels; of one that is selected it is larger.
+const GRIP_PX: f64 = 2.5;
+
+/// What can be dragged: what is selected, and all that is in the same item while a mouse is there to drag it.
+fn grips(canvas: &mut Canvas, state: &State) {
+    let area = state.area();
+    for grip in &state.grips {
+        let selected = state.selects(grip);
+        if !selected && state.pointer.is_none() {
+            continue;
+        }
+        let screen = |at: Point| state.viewport.screen_from_image(at, area);
+        let half = GRIP_PX * state.scale * if selected { f64::from(SELECTED_GROWTH) } else { 1.0 };
+        let color = if selected { ACCENT } else { TEXT };
+        canvas.with_halo(|c| {
+            if let Some(from) = grip.from {
+                c.line(screen(from), screen(grip.at), state.scale, color);
+            }
+            c.rect(Rect::from_center_size(screen(grip.at), (2.0 * half, 2.0 * half)), 0.0, color);
+        });
+    }
+}
+
+/// The box that the mouse draws.
+fn band(canvas: &mut Canvas, state: &State) {
+    let Some((from, to)) = state.band else { return };
+    let corners = [(from.x, from.y), (to.x, from.y), (to.x, to.y), (from.x, to.y)];
+    let points = corners.map(|at| state.viewport.screen_from_image(at.into(), state.area()));
+    let dash = Some((4.0 * state.scale, 3.0 * state.scale));
+    canvas.with_halo(|c| c.polyline(&points, true, state.scale, dash, ACCENT));
+}
+
+/// A ring where what is dragged goes.
 fn dragged(canvas: &mut Canvas, state: &State) {
     let Some((_, at)) = &state.dragged else { return };
     let (at, scale) = (state.viewport.screen_from_image(*at, state.area()), state.scale);

@@ -39,6 +39,7 @@ impl App {
             self.hurry.changed(Instant::now());
             self.reply(ToEditor::Camera(self.state.own_camera()));
         }
+        self.tell_drag();
         self.owed.take().into_iter().for_each(|reply| self.reply(reply));
         Ok(())
     }
@@ -88,7 +89,10 @@ impl App {
             self.state.fps = Some(fps);
             self.report();
         }
-        self.state.transport.advance(passed, &self.state.timeline);
+        let goes_back = self.state.transport.advance(passed, &self.state.timeline);
+        if goes_back {
+            self.lead();
+        }
         if !self.state.transport.playing {
             self.lead();
             self.report();

@@ -12,11 +12,13 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow};
 use winit::window::WindowId;
 
 use super::app::App;
+use super::grasp::Held;
 use super::input;
-use super::mouse::{Asked, Button, Held};
+use super::mouse::{Asked, Button};
 use super::opened::OpenWindow;
 use super::worker::Event;
 use crate::base::error::{Error, Result};
+use crate::base::number;
 use crate::preview::keys::TRY_NOW;
 use crate::preview::views;
 use crate::preview::wire::message::ToEditor;
@@ -37,6 +39,10 @@ impl App {
 
     /// A key: the window follows at once, and the editor is told what concerns it too.
     fn key(&mut self, event_loop: &ActiveEventLoop, command: &'static str) {
+        if command == "close-panel" && self.mouse.lets_go(&mut self.state) {
+            self.reply(ToEditor::Command("undrag".to_owned()));
+            return self.redraw();
+        }
         self.leading(|app| app.run(event_loop, command));
         match command {
             "mark-point" => self.tell(command, self.state.marked),
@@ -60,6 +66,9 @@ impl App {
     }
 
     fn pointer(&mut self, at: Option<Point>) {
+        if self.mouse.drags_grip() {
+            self.look_at_keys();
+        }
         self.leading(|app| app.mouse.moved(&mut app.state, at));
         if let Some(Point { x, y }) = self.state.pointed() {
             self.reply(ToEditor::Pointer { x, y });
@@ -69,8 +78,8 @@ impl App {
 
     /// Learns which keys are held with the mouse while somebody else has the keyboard, as the editor mostly has.
     fn look_at_keys(&mut self) {
-        if let Some((shift, alt)) = self.opened.as_ref().and_then(OpenWindow::held_elsewhere) {
-            self.mouse.hold(Held { alt, shift });
+        if let Some(held) = self.opened.as_ref().and_then(OpenWindow::held_elsewhere) {
+            self.mouse.hold(held);
         }
     }
 
@@ -91,10 +100,23 @@ impl App {
             Asked::Nothing => {}
             Asked::Play => self.key(event_loop, "play"),
             Asked::Fit => self.run(event_loop, "zoom-fit"),
+            Asked::Band(from, to) => {
+                let corners = [from.x, from.y, to.x, to.y].map(|c| number::text(number::rounded(c, 1))).join(" ");
+                self.reply(ToEditor::Command(format!("band {corners}")));
+            }
             Asked::Select(at) => self.tell("select-point", Some(at)),
+            Asked::Take(pointer) => self.reply(ToEditor::Command(format!("take {pointer}"))),
             Asked::Drop(dragged, at) => self.tell(&format!("drop {dragged}"), Some(at)),
         }
         self.pointed();
+    }
+
+    /// Tells the editor where a drag that goes on has moved something, so that it is seen there: once a drawing.
+    pub(super) fn tell_drag(&mut self) {
+        let told = self.mouse.moves().map(|(pointer, at)| (format!("drag {pointer}"), at));
+        if let Some((command, at)) = told {
+            self.tell(&command, Some(at));
+        }
     }
 
     /// The pointer shows what can be done where it is.
@@ -169,9 +191,9 @@ impl ApplicationHandler<Event> for App {
             }
             WindowEvent::ModifiersChanged(held) => {
                 self.held = held.state();
-                // Window managers often take Alt for themselves.
-                let alt = self.held.alt_key() || self.held.control_key();
-                self.mouse.hold(Held { alt, shift: self.held.shift_key() });
+                let held = &self.held;
+                let (shift, alt, ctrl) = (held.shift_key(), held.alt_key(), held.control_key());
+                self.mouse.hold(Held { shift, alt, ctrl });
             }
             WindowEvent::KeyboardInput { event, is_synthetic: false, .. } if event.state == ElementState::Pressed => {
                 if let Some(command) = input::command(&event.logical_key, self.held, event.repeat) {
@@ -185,6 +207,9 @@ impl ApplicationHandler<Event> for App {
             }
             WindowEvent::MouseInput { state, button: MouseButton::Middle, .. } => {
                 self.press(event_loop, Button::Middle, state == ElementState::Pressed);
+            }
+            WindowEvent::MouseInput { state, button: MouseButton::Right, .. } => {
+                self.press(event_loop, Button::Right, state == ElementState::Pressed);
             }
             WindowEvent::MouseWheel { delta, .. } => self.wheel(delta),
             _ => {}

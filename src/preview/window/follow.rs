@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::time::{Duration, Instant};
 
-use kurbo::Size;
+use kurbo::{Point, Size};
 use winit::event_loop::ActiveEventLoop;
 
 use super::app::App;
@@ -107,6 +107,7 @@ impl App {
     fn hear(&mut self, event_loop: &ActiveEventLoop, said: FromEditor) {
         match said {
             FromEditor::Selection(pointer) => self.select(pointer),
+            FromEditor::Cursor(at) => self.state.cursor = at.map(Point::from),
             FromEditor::Transport(transport) => self.join_in(transport),
             FromEditor::Look { camera, .. } => self.state.look_from(camera.as_ref()),
             FromEditor::View(command) if command == LOSE_DEVICE => {

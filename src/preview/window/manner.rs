@@ -1,9 +1,13 @@
 //! How a window opens and behaves, and what messages call it.
 
+use std::path::PathBuf;
+
 /// How a window opens and behaves.
 pub struct Manner {
     /// What the scene is called.
     pub name: String,
+    /// The beginning of the names of its shots.
+    pub shots: PathBuf,
     /// The largest side of a picture that is given to the GPU, in pixels.
     pub most: usize,
     /// Whether it takes the keyboard when it opens, as a window does that somebody asked for.

@@ -24,6 +24,7 @@ mod draw;
 mod events;
 mod follow;
 mod glyphs;
+mod grasp;
 mod hurry;
 mod input;
 mod labels;

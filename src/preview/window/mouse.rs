@@ -5,12 +5,9 @@ use std::time::{Duration, Instant};
 use kurbo::Point;
 
 use super::bar;
+use super::grasp::{CLICK_PX, Grasp, Held, REACH_PX, grip_at};
 use super::state::State;
 
-/// A click may move the pointer by this much, in logical pixels.
-const CLICK_PX: f64 = 3.0;
-/// The border of before and after, and grips, can be grabbed from this distance, in logical pixels.
-const BORDER_PX: f64 = 7.0;
 /// Two clicks within this time, at about the same place, are a double click.
 const DOUBLE: Duration = Duration::from_millis(400);
 
@@ -23,8 +20,12 @@ pub enum Asked {
     Play,
     /// Select what stands there in the picture.
     Select(Point),
-    /// Move what is at this JSON pointer to a place of the picture.
+    /// Go to what is at this JSON pointer.
+    Take(String),
+    /// Move what is at this JSON pointer to a place of the picture; the drag has ended.
     Drop(String, Point),
+    /// Select what stands between two corners of the picture.
+    Band(Point, Point),
     /// Fit the picture into the window.
     Fit,
 }
@@ -54,6 +55,8 @@ enum Drag {
     Along,
     Time,
     Border,
+    /// The corner of a box; see [`State::band`].
+    Band,
     /// See [`Mouse::dragged`].
     Grip,
 }
@@ -63,14 +66,7 @@ enum Drag {
 pub enum Button {
     Left,
     Middle,
-}
-
-/// The keys that change what it does.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Held {
-    /// Alt or Ctrl.
-    pub alt: bool,
-    pub shift: bool,
+    Right,
 }
 
 /// See the top of the file.
@@ -79,8 +75,7 @@ pub struct Mouse {
     drag: Drag,
     /// Where the left button went down on the picture, as long as that may become a click.
     pressed_at: Option<Point>,
-    /// JSON pointer of what is dragged by a grip.
-    dragged: Option<String>,
+    dragged: Option<Grasp>,
     /// When and where the last click was.
     clicked: Option<(Instant, Point)>,
     /// The fraction of a wheel step that has been turned so far.
@@ -95,6 +90,28 @@ impl Mouse {
     /// Whether the time is dragged: then this window leads.
     pub fn drags_time(&self) -> bool {
         self.drag == Drag::Time
+    }
+
+    /// Whether something is dragged by a grip.
+    pub fn drags_grip(&self) -> bool {
+        self.drag == Drag::Grip
+    }
+
+    /// What a drag that goes on has moved, and where to, if that has not been told yet.
+    pub fn moves(&mut self) -> Option<(&str, Point)> {
+        let dragged = self.dragged.as_mut()?;
+        let to = dragged.untold()?;
+        Some((dragged.pointer(), to))
+    }
+
+    /// Ends a drag by a grip as if it had not been; whether there was one.
+    pub fn lets_go(&mut self, state: &mut State) -> bool {
+        state.dragged = None;
+        let dragged = self.dragged.take();
+        if dragged.is_some() {
+            self.drag = Drag::Nothing;
+        }
+        dragged.is_some()
     }
 
     /// Other keys are held with it.
@@ -118,7 +135,11 @@ impl Mouse {
             (Drag::Along, Some(from), Some(to)) => state.drag_along(to - from),
             (Drag::Time, _, Some(to)) => scrub(state, to.x),
             (Drag::Border, _, Some(to)) => state.drag_wipe(to.x),
-            (Drag::Grip, ..) => state.dragged = self.dragged.clone().zip(state.pointed()),
+            (Drag::Band, _, Some(to)) => {
+                let to = state.viewport.image_from_screen(to, state.area());
+                state.band = state.band.map(|(from, _)| (from, to));
+            }
+            (Drag::Grip, _, Some(to)) => self.dragged.iter_mut().for_each(|grasp| grasp.follow(state, self.held, to)),
             _ => {}
         }
     }
@@ -128,15 +149,19 @@ impl Mouse {
         state.words.told = None;
         let Some(at) = state.pointer else { return Asked::Nothing };
         if at.y < state.area().height {
+            let grip = grip_at(state, at).filter(|_| button == Button::Left);
             self.drag = match button {
+                Button::Right => Drag::Band,
+                Button::Left if on_border(state, at) => Drag::Border,
+                Button::Left if grip.is_some() => Drag::Grip,
                 _ if state.camera.is_some() && self.held.shift => Drag::Along,
                 Button::Middle if state.camera.is_some() => Drag::Round,
-                Button::Left if state.camera.is_some() && self.held.alt => Drag::Round,
-                Button::Left if on_border(state, at) => Drag::Border,
-                Button::Left if grip_at(state, at).is_some() => Drag::Grip,
+                Button::Left if state.camera.is_some() && self.held.goes_round() => Drag::Round,
                 _ => Drag::Picture,
             };
-            self.dragged = (self.drag == Drag::Grip).then(|| grip_at(state, at)).flatten();
+            self.dragged = grip.filter(|_| self.drag == Drag::Grip).map(|grip| Grasp::new(grip, at, state));
+            let corner = state.viewport.image_from_screen(at, state.area());
+            state.band = (self.drag == Drag::Band).then_some((corner, corner));
             self.pressed_at = (button == Button::Left && self.drag == Drag::Picture).then_some(at);
         } else if button == Button::Left {
             if bar::is_sign(state, at) {
@@ -150,9 +175,20 @@ impl Mouse {
 
     /// A button comes up; if the pointer has hardly moved since it went down, that was a click.
     pub fn released(&mut self, state: &mut State, now: Instant) -> Asked {
-        (self.drag, state.dragged) = (Drag::Nothing, None);
-        if let Some(dragged) = self.dragged.take() {
-            return state.pointed().map_or(Asked::Nothing, |at| Asked::Drop(dragged, at));
+        self.drag = Drag::Nothing;
+        if let Some((from, to)) = state.band.take() {
+            return if from.distance(to) * state.viewport.zoom > CLICK_PX * state.scale {
+                Asked::Band(from, to)
+            } else {
+                Asked::Nothing
+            };
+        }
+        if let Some(grasp) = self.dragged.take() {
+            return match state.dragged.take() {
+                Some((pointer, at)) => Asked::Drop(pointer, at),
+                None if grasp.moves => Asked::Nothing,
+                None => Asked::Take(grasp.pointer().to_owned()),
+            };
         }
         let (Some(_), Some(to)) = (self.pressed_at.take(), state.pointer) else { return Asked::Nothing };
         let near = |place: Point| place.distance(to) <= 2.0 * CLICK_PX * state.scale;
@@ -176,7 +212,7 @@ impl Mouse {
         let whole = (self.turned + 1e-6_f64.copysign(self.turned)).trunc();
         self.turned -= whole;
         let whole = whole.clamp(-64.0, 64.0) as i32;
-        if whole != 0 && self.held.alt && state.camera.is_some() {
+        if whole != 0 && self.held.goes_round() && state.camera.is_some() {
             state.wheel_nearer(whole);
         } else if whole != 0 {
             let middle = (state.area().to_vec2() / 2.0).to_point();
@@ -194,6 +230,7 @@ impl Mouse {
     pub fn shape(&self, state: &State) -> Shape {
         match (self.drag, state.pointer) {
             (Drag::Border, _) => Shape::Across,
+            (Drag::Band, _) => Shape::Arrow,
             (Drag::Picture | Drag::Round | Drag::Along | Drag::Grip, _) => Shape::Held,
             (Drag::Nothing, Some(at)) if at.y >= state.area().height && bar::is_sign(state, at) => Shape::Hand,
             (Drag::Nothing, Some(at)) if on_border(state, at) => Shape::Across,
@@ -204,16 +241,8 @@ impl Mouse {
 }
 
 fn on_border(state: &State, at: Point) -> bool {
-    let reach = BORDER_PX * state.scale;
+    let reach = REACH_PX * state.scale;
     at.y < state.area().height && state.wipe_at().is_some_and(|x| (x - at.x).abs() <= reach)
-}
-
-/// The nearest grip within reach of a place on the screen: JSON pointer of what it drags.
-fn grip_at(state: &State, at: Point) -> Option<String> {
-    let far = |place: Point| state.viewport.screen_from_image(place, state.area()).distance(at);
-    let grips = state.grips.iter().map(|(path, place)| (path, far(*place)));
-    let near = grips.filter(|(_, far)| *far <= BORDER_PX * state.scale && at.y < state.area().height);
-    near.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(path, _)| path.clone())
 }
 
 fn scrub(state: &mut State, x: f64) {
@@ -225,6 +254,7 @@ fn scrub(state: &mut State, x: f64) {
 mod tests {
     use super::*;
     use crate::layers::space::camera::Camera;
+    use crate::scene::grips::Grip;
 
     /// Presses at one place, moves through the others, lets go at the last.
     fn drag(mouse: &mut Mouse, state: &mut State, button: Button, places: &[(f64, f64)], at: Instant) -> Asked {
@@ -250,7 +280,7 @@ mod tests {
             (Button::Middle, false, true),
         ] {
             state.run("own-view-off");
-            mouse.hold(Held { alt, shift });
+            mouse.hold(Held { alt, shift, ctrl: false });
             assert_eq!(drag(&mut mouse, &mut state, button, &across, now), Asked::Nothing);
             let own = state.own_camera().unwrap();
             assert_ne!(own.position, scene.position, "{button:?} {alt} {shift}");
@@ -261,7 +291,7 @@ mod tests {
         drag(&mut mouse, &mut state, Button::Left, &across, now);
         mouse.turned(&mut state, 1.0);
         assert_eq!(state.own_camera(), None, "these move the picture");
-        mouse.hold(Held { alt: true, shift: false });
+        mouse.hold(Held { alt: true, ..Held::default() });
         let zoom = state.viewport.zoom;
         mouse.turned(&mut state, 1.0);
         assert!(state.own_camera().unwrap().position[2] < scene.position[2] && state.viewport.zoom == zoom);
@@ -337,22 +367,59 @@ mod tests {
         let now = Instant::now();
         let (mut mouse, mut state) = (Mouse::default(), State::for_tests());
         // The picture stands at 200 %.
-        state.grips = vec![("/a".into(), Point::new(50.0, 50.0)), ("/b".into(), Point::new(52.0, 50.0))];
+        let grip = |pointer: &str, x| Grip { pointer: pointer.into(), at: Point::new(x, 50.0), from: None };
+        state.grips = vec![grip("/a", 50.0), grip("/b", 52.0)];
         let origin = state.viewport.origin(state.area());
         let mut dragged =
             |from: f64, to: (f64, f64)| drag(&mut mouse, &mut state, Button::Left, &[(from, 100.0), to], now);
-        assert_eq!(dragged(105.0, (200.0, 60.0)), Asked::Drop("/b".into(), Point::new(100.0, 30.0)));
-        assert_eq!(dragged(97.0, (200.0, 60.0)), Asked::Drop("/a".into(), Point::new(100.0, 30.0)));
+        assert_eq!(dragged(105.0, (200.0, 60.0)), Asked::Drop("/b".into(), Point::new(99.5, 30.0)));
+        assert_eq!(dragged(97.0, (200.0, 60.0)), Asked::Drop("/a".into(), Point::new(101.5, 30.0)), "it does not jump");
+        assert_eq!(dragged(97.0, (98.0, 101.0)), Asked::Take("/a".into()), "a click");
+        state.selection = Some("/b".into());
+        let mut dragged =
+            |from: f64, to: (f64, f64)| drag(&mut mouse, &mut state, Button::Left, &[(from, 100.0), to], now);
+        assert_eq!(
+            dragged(99.0, (98.0, 101.0)),
+            Asked::Take("/b".into()),
+            "what is selected, though another is nearer"
+        );
+        state.selection = None;
+        let mut dragged =
+            |from: f64, to: (f64, f64)| drag(&mut mouse, &mut state, Button::Left, &[(from, 100.0), to], now);
         assert_eq!(dragged(97.0, (9999.0, 60.0)), Asked::Nothing, "beside the picture");
         assert_eq!(state.viewport.origin(state.area()), origin, "the picture stays");
         mouse.moved(&mut state, Some((97.0, 100.0).into()));
         mouse.pressed(&mut state, Button::Left);
         mouse.moved(&mut state, Some((200.0, 60.0).into()));
-        assert_eq!(state.dragged, Some(("/a".to_owned(), Point::new(100.0, 30.0))), "it is seen under the pointer");
+        assert_eq!(state.dragged, Some(("/a".to_owned(), Point::new(101.5, 30.0))), "it is seen under the pointer");
+        assert_eq!(mouse.moves(), Some(("/a", Point::new(101.5, 30.0))));
+        assert_eq!(mouse.moves(), None, "that is told");
+        for (shift, ctrl, at) in
+            [(true, false, (101.5, 50.0)), (false, true, (55.15, 48.0)), (false, false, (101.5, 30.0))]
+        {
+            mouse.hold(Held { shift, alt: false, ctrl });
+            mouse.moved(&mut state, Some((200.0, 60.0).into()));
+            assert_eq!(state.dragged, Some(("/a".to_owned(), at.into())), "{shift} {ctrl}");
+            assert_eq!(mouse.moves(), Some(("/a", at.into())), "{shift} {ctrl}");
+        }
         mouse.released(&mut state, now);
         assert_eq!(state.dragged, None);
+        mouse.moved(&mut state, Some((97.0, 100.0).into()));
+        mouse.pressed(&mut state, Button::Left);
+        mouse.moved(&mut state, Some((200.0, 60.0).into()));
+        assert!(mouse.lets_go(&mut state) && state.dragged.is_none() && !mouse.lets_go(&mut state));
+        assert_eq!(mouse.released(&mut state, now), Asked::Nothing, "it was let go");
         assert_eq!(drag(&mut mouse, &mut state, Button::Middle, &[(97.0, 100.0), (90.0, 100.0)], now), Asked::Nothing);
         assert_ne!(state.viewport.origin(state.area()), origin, "the middle button moves it");
+    }
+
+    #[test]
+    fn the_right_button_draws_a_box() {
+        let now = Instant::now();
+        let (mut mouse, mut state) = (Mouse::default(), State::for_tests());
+        let asked = drag(&mut mouse, &mut state, Button::Right, &[(20.0, 40.0), (60.0, 100.0)], now);
+        assert_eq!((asked, state.band), (Asked::Band(Point::new(10.0, 20.0), Point::new(30.0, 50.0)), None));
+        assert_eq!(drag(&mut mouse, &mut state, Button::Right, &[(20.0, 40.0), (21.0, 40.0)], now), Asked::Nothing);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! What is open once there is something to show: the window with its GPU and surface, and one drawing of it.
 
 use std::borrow::Cow;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -10,6 +11,7 @@ use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
 use winit::window::{CursorIcon, Fullscreen, Window};
 
 use super::chrome;
+use super::grasp::Held;
 use super::manner::{Manner, PLACE};
 use super::mouse::Shape;
 use super::own_view::OwnView;
@@ -21,6 +23,9 @@ use super::text::Letters;
 use super::worker::Event;
 use super::x11::Desk;
 use crate::base::error::{Error, Result};
+use crate::base::pixels::Frame;
+use crate::export::still;
+use crate::files::write;
 use crate::render::Synth;
 use crate::render::gpu::Gpu;
 use crate::render::passes::Asked;
@@ -54,6 +59,8 @@ pub struct OpenWindow {
     looked_from: Option<(OwnView, f64, u64)>,
     /// Whether the CPU makes the picture.
     by_cpu: bool,
+    /// See [`Manner::shots`].
+    shots: PathBuf,
 }
 
 impl OpenWindow {
@@ -79,18 +86,19 @@ impl OpenWindow {
         let (gpu, screen) = Screen::open(instance, window.clone())?;
         let (shape, passes, looked_from, by_cpu) = Default::default();
         let (hidden, covered, looked) = Default::default();
-        Ok(OpenWindow { window, gpu, screen, hidden, covered, desk, looked, shape, passes, looked_from, by_cpu })
+        let shots = manner.shots.clone();
+        Ok(OpenWindow { window, gpu, screen, hidden, covered, desk, looked, shape, passes, looked_from, by_cpu, shots })
     }
 
     /// The same window on a new device.
     pub fn anew(self) -> Result<OpenWindow> {
-        let OpenWindow { window, gpu, screen, desk, covered, shape, .. } = self;
+        let OpenWindow { window, gpu, screen, desk, covered, shape, shots, .. } = self;
         let instance = gpu.instance().clone();
         drop((gpu, screen)); // a window has one surface at a time
         let (gpu, screen) = Screen::open(instance, window.clone())?;
         let (passes, looked_from, by_cpu) = Default::default();
         let (hidden, looked) = Default::default();
-        Ok(OpenWindow { window, gpu, screen, hidden, covered, desk, looked, shape, passes, looked_from, by_cpu })
+        Ok(OpenWindow { window, gpu, screen, hidden, covered, desk, looked, shape, passes, looked_from, by_cpu, shots })
     }
 
     /// Whether the window can be seen: checked now and then while it can, and at every drawing while it cannot.
@@ -108,8 +116,8 @@ impl OpenWindow {
         self.desk.iter().for_each(Desk::take_the_keyboard);
     }
 
-    /// Whether Shift, and whether Alt or Ctrl, are held, if somebody else has the keyboard and that can be known.
-    pub fn held_elsewhere(&self) -> Option<(bool, bool)> {
+    /// The keys that are held with the mouse, if somebody else has the keyboard and that can be known.
+    pub fn held_elsewhere(&self) -> Option<Held> {
         self.desk.as_ref().filter(|_| !self.window.has_focus())?.held()
     }
 
@@ -143,7 +151,7 @@ impl OpenWindow {
             Some(show) => {
                 marks.follow(state, show, letters);
                 (state.arrow_scale, state.longest) = (marks.arrow_scale, marks.longest);
-                state.grips.clone_from(&marks.grips);
+                state.grips = [&marks.grips[..], &marks.moving_grips].concat();
                 let asked = state.pointed().filter(|_| state.shows_vectors());
                 state.jump = asked.and_then(|at| jump_at(&show.synth, at));
                 let in_space = state.pointed().filter(|_| state.camera.is_some());
@@ -167,9 +175,28 @@ impl OpenWindow {
         let chrome = chrome::draw(state, letters);
         let layers =
             [&marks.fixed, &marks.moving, &marks.dragged, &marks.labels, &chrome].map(|canvas| &canvas.strokes[..]);
-        let drawn = self.screen.draw(&self.gpu, state, &pictures, &Strokes { layers, letters });
+        let strokes = Strokes { layers, letters };
+        let drawn = self.screen.draw(&self.gpu, state, &pictures, &strokes);
+        if std::mem::take(&mut state.shot) {
+            let saved = self.screen.shot(&self.gpu, state, &pictures, &strokes).and_then(|shot| self.save(&shot));
+            state.words.told = Some(saved.unwrap_or_else(|error| error.to_string()));
+            self.window.request_redraw();
+        }
         self.gpu.device().take_uncaught()?;
         drawn
+    }
+
+    /// Saves a shot under the first name that is free; returns what is to be said of it.
+    fn save(&self, shot: &Frame) -> Result<String> {
+        let png = still::frame(shot).map_err(|error| Error::at(PLACE, error))?;
+        let name = |n: u32| {
+            let name = self.shots.file_name().unwrap_or_default().to_string_lossy();
+            self.shots.with_file_name(format!("{name}-shot-{n}.png"))
+        };
+        let free = (1..).map(name).find(|path| path.symlink_metadata().is_err());
+        let path = free.ok_or_else(|| Error::at(PLACE, "there are too many shots").cure("move them away"))?;
+        write::write_new(&path, &png)?;
+        Ok(format!("saved as {}", path.display()))
     }
 
     /// How long a new picture took, if there is one: a drawing that took `drawing`, or what was made beside it.

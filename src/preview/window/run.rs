@@ -67,6 +67,8 @@ impl State {
             "field-wider" => self.field_step = FIELD.step(self.field_step, 1),
             "wipe-left" => self.move_wipe(-WIPE_STEP),
             "wipe-right" => self.move_wipe(WIPE_STEP),
+            "play-part" => self.words.told = Some(self.transport.mark_part()),
+            "shot" => self.shot = true,
             "mark-point" => self.marked = self.pointed(),
             "zoom-in" => self.zoom(1, about),
             "zoom-out" => self.zoom(-1, about),

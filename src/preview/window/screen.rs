@@ -12,9 +12,9 @@ use super::stroke::{Color, Stroke};
 use super::style::GROUND;
 use super::text::Letters;
 use crate::base::error::{Error, Result};
-use crate::base::pixels::linear_from_srgb;
+use crate::base::pixels::{Frame, linear_from_srgb};
 use crate::layers::parts::plan::COMMON;
-use crate::render::gpu::Gpu;
+use crate::render::gpu::{Gpu, read_back};
 
 const SHADER: [&str; 2] = [COMMON, include_str!("screen.wgsl")];
 
@@ -118,6 +118,31 @@ impl Screen {
         self.window.pre_present_notify();
         gpu.device().queue.present(texture);
         Ok(Presented::Yes)
+    }
+
+    /// What the window shows, as a picture of its size.
+    pub fn shot(&mut self, gpu: &Gpu, state: &State, pictures: &Pictures, strokes: &Strokes<'_>) -> Result<Frame> {
+        let (width, height) = self.configured;
+        let size = wgpu::Extent3d { width: width.max(1), height: height.max(1), depth_or_array_layers: 1 };
+        let device = gpu.device();
+        let into = device.checked(|| {
+            device.raw.create_texture(&wgpu::TextureDescriptor {
+                label: Some("shot"),
+                size,
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: self.format,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+                view_formats: &[],
+            })
+        })?;
+        self.paint(gpu, &into, state, pictures, strokes)?;
+        let shot = read_back(device, &into)?;
+        let is_bgra = matches!(self.format, wgpu::TextureFormat::Bgra8Unorm | wgpu::TextureFormat::Bgra8UnormSrgb);
+        // A window is not transparent.
+        let code = |[a, b, c, _]: &[u8; 4]| if is_bgra { [*c, *b, *a, 255] } else { [*a, *b, *c, 255] };
+        Ok(Frame::from_cells(shot.width(), shot.height(), shot.cells().iter().map(code).collect()))
     }
 
     fn configure(&mut self, gpu: &Gpu, width: u32, height: u32) -> Result<()> {

@@ -18,10 +18,13 @@ use crate::layers::space::camera::Camera;
 use crate::render::Synth;
 use crate::render::overlay::{aimed, longest, overlay, overlays};
 use crate::render::reduce::reduced;
-use crate::scene::{Scene, words::item_of};
+use crate::scene::grips::{Grip, grips};
+use crate::scene::{Document, Scene, words::item_of};
 
 /// A scene, ready to be drawn.
 pub struct Show {
+    pub document: Document,
+    /// As it is shown: without what is muted.
     pub scene: Arc<Scene>,
     /// As large as the picture: for the overlay.
     pub synth: Synth,
@@ -34,14 +37,14 @@ pub struct Show {
 
 impl Show {
     /// A scene on a GPU that holds pictures of at most `most` pixels a side; with it, what is to be said about that.
-    pub fn new(scene: Arc<Scene>, synth: Synth, most: usize) -> (Show, Option<String>) {
+    pub fn new(document: Document, scene: Arc<Scene>, synth: Synth, most: usize) -> (Show, Option<String>) {
         let (width, height) = synth.size;
         let read = synth.layers.iter().map(|layer| layer.largest_texture());
         let largest = read.chain([width, height]).max().unwrap_or(1);
         let factor = largest.div_ceil(most.max(1)).max(1);
         let frames = if factor > 1 { reduced(&synth, factor) } else { synth.clone() };
         let said = (factor > 1).then(|| format!("{width} x {height} is shown reduced {factor} times"));
-        (Show { scene, still: frames.unmoved(), synth, frames, frame_scale: 1.0 / factor as f64 }, said)
+        (Show { document, scene, still: frames.unmoved(), synth, frames, frame_scale: 1.0 / factor as f64 }, said)
     }
 
     /// Whether any layer has sprites, of which some can be left out.
@@ -107,8 +110,10 @@ pub struct Cached {
     pub dragged: Canvas,
     /// Names and numbers, above all else of the overlay.
     pub labels: Canvas,
-    /// See [`State::grips`].
-    pub grips: Vec<(String, Point)>,
+    /// What can be dragged of what is selected.
+    pub grips: Vec<Grip>,
+    /// What can be dragged of what changes with every frame.
+    pub moving_grips: Vec<Grip>,
     /// See [`State::arrow_scale`].
     pub arrow_scale: f64,
     /// See [`State::longest`].
@@ -146,7 +151,7 @@ impl Cached {
             self.moved_for = moving;
             let synth = seen(&show.synth, state.own_camera().as_ref());
             let found = overlay(&show.scene, Some(&synth), &state.moving_view());
-            self.grips = found.iter().filter_map(grip).collect();
+            self.moving_grips = found.iter().filter_map(grip).collect();
             let (viewport, area, scale) = (&state.viewport, state.area(), state.scale);
             self.moving = marks::draw(&found, viewport, area, scale);
             self.moving.strokes.extend(labels::draw(&found, viewport, area, scale, letters).strokes);
@@ -165,6 +170,7 @@ impl Cached {
     fn make_fixed(&mut self, state: &State, show: &Show, letters: &Letters) {
         let view = state.fixed_view();
         let found = overlay(&show.scene, Some(&show.synth), &view);
+        self.grips = view.selection.as_deref().map_or_else(Vec::new, |at| grips(&show.document, at));
         self.fixed = Canvas::default();
         if state.shows("view-grid") {
             marks::grid(&mut self.fixed, state.picture, &state.viewport, state.area());
@@ -178,9 +184,9 @@ impl Cached {
 }
 
 /// What a mark lets the mouse drag, and where that is.
-fn grip(mark: &Mark) -> Option<(String, Point)> {
+fn grip(mark: &Mark) -> Option<Grip> {
     let Shape::Dot(at) = mark.shape else { return None };
-    mark.look.is_grip.then(|| (mark.path.clone(), at))
+    mark.look.is_grip.then(|| Grip { pointer: mark.path.clone(), at, from: None })
 }
 
 #[cfg(test)]

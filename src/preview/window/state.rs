@@ -9,11 +9,13 @@ use super::thin::Thin;
 use super::transport::Transport;
 use super::viewport::{Fit, Viewport};
 use super::words::{Words, Work};
+use crate::base::pointer::Pointer;
 use crate::layers::ready::Ready;
 use crate::layers::space::camera::Camera;
 use crate::layers::space::fit::Ball;
 use crate::layers::timeline::Timeline;
 use crate::preview::views::Switches;
+use crate::scene::grips::Grip;
 
 /// Height of the bar, in logical pixels.
 pub const BAR_PX: f64 = 34.0;
@@ -69,9 +71,15 @@ pub struct State {
     pub wipe: f64,
     /// The point marked last, in pixels of the picture.
     pub marked: Option<Point>,
-    /// What can be dragged: its JSON pointer, and where in the picture it is.
-    pub grips: Vec<(String, Point)>,
-    /// What is dragged by a grip, as a JSON pointer, and where it would go, in pixels of the picture.
+    /// Where the cursor of the editor's picture is, in pixels of the picture.
+    pub cursor: Option<Point>,
+    /// What the window shows is to be saved.
+    pub shot: bool,
+    /// Two corners of the box that the mouse draws, in pixels of the picture.
+    pub band: Option<(Point, Point)>,
+    /// What can be dragged.
+    pub grips: Vec<Grip>,
+    /// What is dragged by a grip, as a JSON pointer, and where it goes, in pixels of the picture.
     pub dragged: Option<(String, Point)>,
     /// The jump vector under the pointer, where what is shown of jump vectors asks for it.
     pub jump: Option<Vec2>,
@@ -128,6 +136,9 @@ impl Default for State {
             field_step: 0,
             wipe: 0.5,
             marked: None,
+            cursor: None,
+            shot: false,
+            band: None,
             grips: Vec::new(),
             dragged: None,
             jump: None,
@@ -197,6 +208,12 @@ impl State {
     pub fn pointed(&self) -> Option<Point> {
         let at = self.viewport.image_from_screen(self.pointer.filter(|p| p.y < self.area().height)?, self.area());
         self.picture.to_rect().contains(at).then_some(at)
+    }
+
+    /// Whether what a grip moves is selected in the editor, or belongs to that.
+    pub fn selects(&self, grip: &Grip) -> bool {
+        let selected = |at: &str| Pointer(at).is_within(&grip.pointer) || Pointer(&grip.pointer).is_within(at);
+        self.selection.as_deref().is_some_and(|at| !at.is_empty() && selected(at))
     }
 
     /// Puts the border between still and moving at a place on the screen.

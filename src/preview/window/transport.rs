@@ -17,11 +17,25 @@ pub struct Transport {
     pub speed: f64,
     /// Whether only whole frames are shown, each as long as it lasts.
     pub whole_frames: bool,
+    /// What of the timeline is played.
+    pub part: Part,
+}
+
+/// What of the timeline is played.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Part {
+    /// All.
+    #[default]
+    All,
+    /// All, as only the first frame of a part is known.
+    From(f64),
+    /// From this frame to that one, again and again.
+    Between(f64, f64),
 }
 
 impl Default for Transport {
     fn default() -> Self {
-        Transport { playing: false, frame: 0.0, speed: 1.0, whole_frames: false }
+        Transport { playing: false, frame: 0.0, speed: 1.0, whole_frames: false, part: Part::All }
     }
 }
 
@@ -69,12 +83,39 @@ impl Transport {
         }
     }
 
-    /// Runs on by `secs`, if it plays.
-    pub fn advance(&mut self, secs: f64, timeline: &Timeline) {
-        if self.playing {
-            self.frame = bounded(self.frame + secs * self.speed * timeline.fps, timeline);
-            self.playing = timeline.wrap != Wrap::Once || self.frame < last(timeline);
+    /// Runs on by `secs`, if it plays. Returns whether it has gone back to the beginning of a part.
+    pub fn advance(&mut self, secs: f64, timeline: &Timeline) -> bool {
+        if !self.playing {
+            return false;
         }
+        let next = self.frame + secs * self.speed * timeline.fps;
+        match self.part {
+            Part::Between(first, last) if !(first..last + 1.0).contains(&next) => {
+                self.frame = first + (next - first).rem_euclid(last + 1.0 - first);
+                true
+            }
+            _ => {
+                self.frame = bounded(next, timeline);
+                self.playing = timeline.wrap != Wrap::Once || self.frame < last(timeline);
+                false
+            }
+        }
+    }
+
+    /// The frame that is shown begins the part that is played, then ends it; then all is played again. Returns what it does in
+    /// words.
+    pub fn mark_part(&mut self) -> String {
+        let here = self.frame.floor();
+        let (part, told) = match self.part {
+            Part::All => (Part::From(here), format!("a part begins at frame {here}: A at another frame ends it")),
+            Part::From(first) => {
+                let (first, last) = (first.min(here), first.max(here));
+                (Part::Between(first, last), format!("frames {first} to {last} are played: A plays all again"))
+            }
+            Part::Between(..) => (Part::All, "all frames are played".to_owned()),
+        };
+        self.part = part;
+        told
     }
 
     /// Pauses at a whole frame, `by` frames on (or back, if negative).
@@ -96,6 +137,10 @@ impl Transport {
     /// Keeps the place within a timeline that has changed.
     pub fn follow(&mut self, timeline: &Timeline) {
         self.frame = bounded(self.frame, timeline);
+        let most = last(timeline);
+        if matches!(self.part, Part::From(frame) | Part::Between(_, frame) if frame > most) {
+            self.part = Part::All;
+        }
     }
 }
 
@@ -164,6 +209,35 @@ mod tests {
         assert_eq!((transport.playing, transport.frame), (false, 3.0));
         transport.toggle(&timeline);
         assert_eq!((transport.playing, transport.frame), (true, 0.0));
+    }
+
+    #[test]
+    fn a_part_is_played_again_and_again() {
+        for wrap in [Wrap::Repeat, Wrap::Once] {
+            let timeline = Timeline { duration: 8.0, fps: 1.0, wrap };
+            let mut transport = Transport { playing: true, frame: 5.0, ..Transport::default() };
+            let mut marked = |frame| {
+                transport.frame = frame;
+                transport.mark_part();
+                (transport.part, transport.clone())
+            };
+            assert_eq!(marked(5.5).0, Part::From(5.0), "{wrap:?}");
+            let (part, mut playing) = marked(2.0);
+            assert_eq!(part, Part::Between(2.0, 5.0), "{wrap:?}");
+            for (from, by, to, back) in
+                [(2.0, 3.5, 5.5, false), (5.5, 1.0, 2.5, true), (7.0, 0.5, 3.5, true), (0.0, 1.0, 5.0, true)]
+            {
+                playing.frame = from;
+                assert_eq!(
+                    (playing.advance(by, &timeline), playing.frame, playing.playing),
+                    (back, to, true),
+                    "{wrap:?} {from}"
+                );
+            }
+            assert_eq!(marked(3.0).0, Part::All);
+            playing.follow(&Timeline { duration: 5.0, ..timeline });
+            assert_eq!(playing.part, Part::All, "its end is gone");
+        }
     }
 
     #[test]

@@ -23,7 +23,7 @@ use crate::preview::wire::message::FromEditor;
 use crate::render::gpu::{Uploaded, Uploader};
 use crate::render::shown::Shown;
 use crate::render::{self, Synth};
-use crate::scene::{Scene, named};
+use crate::scene::{Document, Scene, named};
 
 /// How long after its beginning, and how often from then on, progress is told.
 const BETWEEN: Duration = Duration::from_millis(500);
@@ -61,7 +61,9 @@ pub enum Event {
 /// A scene that is ready to be shown.
 #[derive(Debug)]
 pub struct Ready {
-    /// The scene.
+    /// The document.
+    pub document: Document,
+    /// The scene, as it is shown.
     pub scene: Arc<Scene>,
     /// Its synthesis.
     pub synth: Synth,
@@ -110,7 +112,7 @@ impl Sending {
         let thread = std::thread::spawn(move || {
             let sent = progress("sending the picture to the GPU", send.clone());
             let make = || {
-                let (show, reduced) = Show::new(ready.scene.clone(), ready.synth.clone(), most);
+                let (show, reduced) = Show::new(ready.document.clone(), ready.scene.clone(), ready.synth.clone(), most);
                 let uploaded = uploader.upload(&[&show.frames, &show.still], &sent, &stopped)?;
                 Ok((show, reduced, uploaded))
             };
@@ -133,7 +135,7 @@ impl Drop for Sending {
 /// A scene to be synthesised.
 #[derive(Clone)]
 struct Job {
-    scene: Arc<Scene>,
+    document: Document,
     revision: u64,
     /// How it is shown.
     how: Shown,
@@ -199,8 +201,8 @@ fn listen(updates: &Receiver<Update>, cancel: &AtomicBool, jobs: &Sender<Job>, s
     let (mut latest, mut how) = (None, Shown::default());
     while alive {
         alive = match updates.recv_timeout(LOOK) {
-            Ok(Update::Scene { scene, revision }) => {
-                let job = Job { scene, revision, how: how.clone() };
+            Ok(Update::Scene { document, revision }) => {
+                let job = Job { document, revision, how: how.clone() };
                 latest = Some(job.clone());
                 jobs.send(job).is_ok()
             }
@@ -230,7 +232,8 @@ fn synthesise(
     let send = |event| if tell(event) { Ok(()) } else { Err(Gone) };
     let mut previous: Option<Synth> = None;
     while let Ok(first) = work.recv() {
-        let Job { scene, revision, how } = work.try_iter().last().unwrap_or(first);
+        let Job { document, revision, how } = work.try_iter().last().unwrap_or(first);
+        let scene = document.scene().clone();
         let began = Instant::now();
         send(Event::Work(Work { what: READING, is_long: false, percent: None }))?;
         let made = fault::caught(|| {
@@ -259,7 +262,7 @@ fn synthesise(
                 problems.extend(synth.lacks());
                 let problems = named(&scene, problems);
                 let around = Ball::around(&|ways| render::reach(&synth.layers, TIMES, ways));
-                send(Event::Ready(Ready { scene, synth, around, revision, synth_ms, problems }))?;
+                send(Event::Ready(Ready { document, scene, synth, around, revision, synth_ms, problems }))?;
             }
             // A missing picture was already found, with its reason, while it was loaded.
             Err(problem) => {
@@ -286,9 +289,10 @@ mod tests {
     use crate::base::picture::Picture;
     use crate::preview::wire::message::FromEditor;
 
-    fn scene(image: &str) -> Arc<Scene> {
-        let text = format!(r#"{{"plica": 1, "layers": [{{"kind": "picture", "name": "a", "image": "{image}"}}]}}"#);
-        Arc::new(serde_json::from_str(&text).unwrap())
+    fn document(image: &str) -> Document {
+        let images = r#"{"a": {"path": "a.png"}, "b": {"path": "b.png"}}"#;
+        let layers = format!(r#"[{{"kind": "picture", "name": "a", "image": "{image}"}}]"#);
+        Document::parse(&format!(r#"{{"plica": 1, "images": {images}, "layers": {layers}}}"#)).unwrap()
     }
 
     #[test]
@@ -300,9 +304,9 @@ mod tests {
             (Materials { pictures: [("a".to_owned(), picture)].into(), ..Materials::default() }, Vec::new())
         });
         for revision in 1..=3 {
-            updates.send(Update::Scene { scene: scene("a"), revision }).unwrap();
+            updates.send(Update::Scene { document: document("a"), revision }).unwrap();
         }
-        updates.send(Update::Scene { scene: scene("b"), revision: 4 }).unwrap();
+        updates.send(Update::Scene { document: document("b"), revision: 4 }).unwrap();
         updates.send(Update::Said(FromEditor::Notice("hello".into()))).unwrap();
         drop(updates);
         start(receiver, load, Arc::default(), move |event| events.send(event).is_ok());

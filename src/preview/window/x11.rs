@@ -8,6 +8,8 @@ use x11rb::protocol::xproto::{AtomEnum, ConnectionExt as _, InputFocus, KeyButMa
 use x11rb::rust_connection::RustConnection;
 use x11rb::wrapper::ConnectionExt as _;
 
+use super::grasp::Held;
+
 /// A window on an X server.
 pub struct Desk {
     server: RustConnection,
@@ -59,12 +61,12 @@ impl Desk {
         }
     }
 
-    /// Whether Shift, and whether Alt or Ctrl, are held: who has the keyboard is told, but a window may be dragged in
-    /// without it.
-    pub fn held(&self) -> Option<(bool, bool)> {
+    /// The keys that are held with the mouse: who has the keyboard is told, but a window may be dragged in without it.
+    pub fn held(&self) -> Option<Held> {
         let held = u16::from(self.server.query_pointer(self.window).ok()?.reply().ok()?.mask);
         let is_held = |key: KeyButMask| held & u16::from(key) != 0;
-        Some((is_held(KeyButMask::SHIFT), is_held(KeyButMask::MOD1) || is_held(KeyButMask::CONTROL)))
+        let [shift, alt, ctrl] = [KeyButMask::SHIFT, KeyButMask::MOD1, KeyButMask::CONTROL].map(is_held);
+        Some(Held { shift, alt, ctrl })
     }
 
     /// Whether the window is there to be seen: neither minimised nor on another desktop.

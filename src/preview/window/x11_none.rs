@@ -2,6 +2,8 @@
 
 use winit::window::Window;
 
+use super::grasp::Held;
+
 /// Never there.
 pub enum Desk {}
 
@@ -22,7 +24,7 @@ impl Desk {
     }
 
     /// See `x11.rs`.
-    pub fn held(&self) -> Option<(bool, bool)> {
+    pub fn held(&self) -> Option<Held> {
         match *self {}
     }
 

@@ -47,6 +47,8 @@ pub enum FromEditor {
     },
     /// JSON pointer of what is selected.
     Selection(Option<String>),
+    /// Where the cursor of the editor's picture is, in pixels of the picture, while the picture has the focus.
+    Cursor(Option<(f64, f64)>),
     /// Whether the animation runs, and where it is.
     Transport(Transport),
     /// Look from somewhere.
@@ -198,7 +200,7 @@ impl FromEditor {
             FromEditor::Problems(problems) => Meaning::Link(OfTheLink::Problems(problems)),
             FromEditor::Bye(reason) => Meaning::Link(OfTheLink::Bye(reason)),
             FromEditor::Selection(_) | FromEditor::Transport(_) | FromEditor::Look { .. } => Meaning::Windows(self),
-            FromEditor::View(_) | FromEditor::Views(_) => Meaning::Windows(self),
+            FromEditor::Cursor(_) | FromEditor::View(_) | FromEditor::Views(_) => Meaning::Windows(self),
             // What begins the link is heard before; what scripts are told, windows are not.
             FromEditor::Hello { .. } | FromEditor::Alive | FromEditor::Edited(_) => Meaning::Nothing,
         }
@@ -217,6 +219,7 @@ impl FromEditor {
             // The document, and what is selected, playing or wrong in it.
             FromEditor::Hello { .. } | FromEditor::Patch { .. } | FromEditor::Scene { .. } => Some(self),
             FromEditor::Selection(_) | FromEditor::Transport(_) | FromEditor::Look { .. } => Some(self),
+            FromEditor::Cursor(_) => Some(self),
             FromEditor::Notice(_) | FromEditor::Problems(_) => Some(self),
             // The link and the files that it brings.
             FromEditor::Images(_) | FromEditor::Piece { .. } | FromEditor::Alive => Some(self),

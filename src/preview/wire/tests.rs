@@ -41,6 +41,8 @@ fn every_message_comes_back_as_it_was_sent() {
         FromEditor::Scene { revision: 0, document },
         FromEditor::Selection(Some("/layers/0".into())),
         FromEditor::Selection(None),
+        FromEditor::Cursor(Some((12.5, 0.25))),
+        FromEditor::Cursor(None),
         FromEditor::Transport(Transport { playing: true, time: 1.25, speed: 0.5 }),
         FromEditor::View("view-field".into()),
         FromEditor::Views(vec!["view-field".into(), "zoom-in".into()]),

@@ -206,8 +206,11 @@ impl Each {
     }
 }
 
-/// Reads back an encoded frame. Rows of a copy are aligned to 256 bytes.
-fn read_back(device: &Device, texture: &wgpu::Texture) -> Result<Frame> {
+/// Reads back a frame whose pixels are four codes of 8 bits. Rows of a copy are aligned to 256 bytes.
+///
+/// # Errors
+/// If the device is lost.
+pub fn read_back(device: &Device, texture: &wgpu::Texture) -> Result<Frame> {
     let (width, height) = (texture.width() as usize, texture.height() as usize);
     let stride = (width * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize);
     let buffer = readable(device, (stride * height) as u64)?;

@@ -31,6 +31,10 @@ pub const COMMANDS: &[Command] = &[
     }),
     command("e!", "[PATH]", "Open another scene, or go back to the saved version of this one", open),
     command("view", "[COMMAND]", "Open the preview window, or change what it shows", view).counted(),
+    command("shot", "", "Save what the window shows as a picture beside the scene", |state, _| {
+        state.ask(Effect::View(Some("shot".into())));
+        Ok(())
+    }),
     command("image", "edit [NAME]", "Open a picture of the scene in another program", image).inside(),
     command("redraw", "", "Redraw the screen", |state, _| {
         state.ask(Effect::Redraw);

@@ -41,6 +41,7 @@ mod scripts;
 mod selecting;
 mod sharing;
 mod snapping;
+mod snapshots;
 mod styles;
 mod transforming;
 pub mod tutor;
@@ -68,6 +69,7 @@ pub static TABLE: Table = Table(&[
     replacing::COMMANDS,
     sharing::COMMANDS,
     undoing::COMMANDS,
+    snapshots::COMMANDS,
     yanking::COMMANDS,
     filling::COMMANDS,
     piping::COMMANDS,

@@ -1,12 +1,14 @@
 //! The picture's cursor, and what it places.
 
 use kurbo::{Point, Vec2};
+use serde_json::Value;
 
 use super::command::{Call, Command, Done, command};
 use super::items::go_to;
+use crate::base::pointer::Pointer;
 use crate::base::problem::quoted;
 use crate::render::{overlay, passes};
-use crate::scene::address;
+use crate::scene::{Edit, address, grips};
 use crate::tui::events::Effect;
 use crate::tui::layout::picture;
 use crate::tui::state::painting::Sees;
@@ -22,7 +24,7 @@ pub const COMMANDS: &[Command] = &[
         .counted_with(&["next", "previous"]),
     command(
         "pointer",
-        "[mark|select|drop POINTER]",
+        "[mark|select|take POINTER|drag POINTER|undrag|drop POINTER|band X Y X Y]",
         "Enter the place of the window's pointer, or move the picture's cursor or something else there",
         pointer,
     )
@@ -94,25 +96,75 @@ fn placed(state: &mut State, call: &Call) -> Done {
     }
 }
 
-/// Ends a drag of a window: what it dragged goes to where the pointer is.
-fn dropped(state: &mut State, call: &Call, dragged: &str) -> Done {
-    if !matches!(state.typing.mode, Mode::Normal) {
-        return Err(BUSY.into());
+/// The fields, and their values, with which what a window drags goes to where its pointer is.
+fn dragged_to(state: &State, dragged: &str) -> Result<Vec<(String, Value)>, String> {
+    let (x, y) = state.outside.pointer.ok_or(BESIDE)?;
+    match grips::dragged(state.document(), dragged, (x, y).into()) {
+        Some(set) => Ok(set),
+        None => Ok(vec![spatial::dropped(state, dragged)?]),
     }
-    let (pointer, value) = spatial::dropped(state, dragged)?;
-    let address = address::address(state.document(), &pointer);
-    call.obey(state, &format!("set {address}={value}"))?;
-    call.obey(state, &format!("go {pointer}"))
 }
 
-/// Why a window's mouse changes nothing.
-const BUSY: &str = "something is being typed or chosen: end that first (Esc)";
+/// A drag of a window goes on: what it drags is where the pointer is. All of a drag is one step of undo.
+fn dragged(state: &mut State, call: &Call, dragged: &str) -> Done {
+    idle(state)?;
+    let set = dragged_to(state, dragged)?;
+    if state.outside.dragged.as_ref().is_none_or(|(pointer, _)| pointer != dragged) {
+        set.first().map_or(Ok(()), |(pointer, _)| call.obey(state, &format!("go {pointer}")))?;
+        state.scene.close_step();
+        state.outside.dragged = Some((dragged.to_owned(), state.scene.revision()));
+    }
+    let edit = Edit::all(set.into_iter().map(|(pointer, value)| Edit::set(state.document(), &pointer, value)));
+    state.edit(edit, true)
+}
+
+/// Ends a drag of a window. Its line in the log is what it has set.
+fn dropped(state: &mut State, call: &Call, pointer: &str) -> Done {
+    dragged(state, call, pointer)?;
+    state.outside.dragged = None;
+    let set = dragged_to(state, pointer)?.into_iter();
+    let set = set.map(|(pointer, value)| format!(" {}={value}", address::address(state.document(), &pointer)));
+    call.obey(state, &format!("set{}", set.collect::<String>()))
+}
+
+/// Ends a drag of a window as if it had not been.
+fn undragged(state: &mut State, call: &Call) -> Done {
+    match state.outside.dragged.take() {
+        Some((_, revision)) if revision != state.scene.revision() => call.obey(state, "undo"),
+        _ => Ok(()),
+    }
+}
+
+/// Selects what stands within a box that a window's mouse has drawn: rows of the table that is shown, or if none of them has a
+/// place, of the list that has what is nearest to the middle of the box.
+fn banded(state: &mut State, call: &Call, corners: &str) -> Done {
+    idle(state)?;
+    let numbers: Vec<f64> = corners.split(' ').filter_map(|number| number.parse().ok()).collect();
+    let [x0, y0, x1, y1] = numbers[..] else { return Err("band takes X Y X Y".into()) };
+    let sheet = state.sheet();
+    let stands = |row| sheet.pointer(row).is_some_and(|pointer| place::seen(state, &pointer).is_some());
+    if !(0..sheet.len()).any(stands) {
+        let middle = Point::new(f64::midpoint(x0, x1), f64::midpoint(y0, y1));
+        let reach_px = Point::new(x0, y0).distance((x1, y1).into()) / 2.0;
+        let list = overlay::pick(state.document().scene(), middle, reach_px.max(1.0))
+            .and_then(|hit| Pointer(&hit.path).parent().map(str::to_owned));
+        list.map_or(Ok(()), |list| call.obey(state, &format!("go {list}")))?;
+    }
+    call.obey(state, &format!("select within {corners}"))
+}
+
+/// Why nothing goes to where a window's pointer is.
+const BESIDE: &str = "the window's pointer is not over the picture";
+
+/// A window's mouse changes nothing meanwhile.
+fn idle(state: &State) -> Done {
+    let is_idle = matches!(state.typing.mode, Mode::Normal);
+    if is_idle { Ok(()) } else { Err("something is being typed or chosen: end that first (Esc)".into()) }
+}
 
 /// Goes to what is at a place of the picture: an anchor near it, else the zone; else the layer in space that is seen there.
 fn select(state: &mut State, call: &Call, at: Point) -> Done {
-    if !matches!(state.typing.mode, Mode::Normal) {
-        return Err(BUSY.into());
-    }
+    idle(state)?;
     let (width, height) = state.picture.size.unwrap_or_default();
     let reach_px = (PICK_REACH * width.max(height) as f64).max(1.0);
     match overlay::pick(state.document().scene(), at, reach_px) {
@@ -134,12 +186,17 @@ fn seen_at(state: &State, at: Point) -> Option<usize> {
 /// In an entry, types the coordinate of the window's pointer. Otherwise moves the picture's cursor there, and unless the point
 /// is only to be marked, also the point of the row under the cursor, or the end of the jump vector under it.
 fn pointer(state: &mut State, call: &Call) -> Done {
-    let (x, y) = state.outside.pointer.ok_or("the window's pointer is not over the picture")?;
+    match call.text.split_once(' ').unwrap_or((call.text, "")) {
+        ("take", pointer) => return idle(state).and_then(|()| call.obey(state, &format!("go {pointer}"))),
+        ("drag", pointer) => return dragged(state, call, pointer),
+        ("drop", pointer) => return dropped(state, call, pointer),
+        ("undrag", _) => return undragged(state, call),
+        ("band", corners) => return banded(state, call, corners),
+        _ => {}
+    }
+    let (x, y) = state.outside.pointer.ok_or(BESIDE)?;
     if call.text == "select" {
         return select(state, call, (x, y).into());
-    }
-    if let Some(dragged) = call.text.strip_prefix("drop ") {
-        return dropped(state, call, dragged);
     }
     if matches!(state.typing.mode, Mode::Entry(_)) {
         return entry::offer(state, (x, y).into());

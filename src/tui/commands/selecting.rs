@@ -2,20 +2,22 @@
 
 use std::collections::BTreeSet;
 
+use kurbo::{Point, Rect};
+
 use super::command::{Call, Command, Done, command};
 use super::items::{alike, rows};
 use crate::base::pointer::Pointer;
 use crate::base::text::counted;
 use crate::tui::events::Effect;
 use crate::tui::state::cursor::Selection;
-use crate::tui::state::{Pane, State, entry};
+use crate::tui::state::{Pane, State, entry, place};
 use crate::tui::text::said::unquoted;
 
 pub const COMMANDS: &[Command] = &[
     command(
         "select",
-        "[all|again|EXPRESSION]",
-        "Begin or end a selection of rows; select all, the last selection again, or the rows for which something holds",
+        "[all|again|within X Y X Y|EXPRESSION]",
+        "Begin or end a selection of rows; select all, the last again, those in a box of the picture, or for which something holds",
         select,
     )
     .counted_with(&[""]),
@@ -34,6 +36,7 @@ fn select(state: &mut State, call: &Call) -> Done {
         "" => state.cursor.selected_from = Some(state.cursor.row),
         "all" => all(state)?,
         "again" => again(state)?,
+        text if text.starts_with("within ") => within(state, text)?,
         condition => matching(state, &unquoted(condition))?,
     }
     Ok(())
@@ -94,6 +97,29 @@ fn matching(state: &mut State, condition: &str) -> Done {
     // What follows is about the rows, not about the node of the tree.
     state.cursor.focus = Pane::Table;
     Ok(())
+}
+
+/// Selects the rows that stand within a box of the picture, given by two of its corners.
+fn within(state: &mut State, text: &str) -> Done {
+    let numbers: Vec<f64> = text.split_whitespace().skip(1).filter_map(|number| number.parse().ok()).collect();
+    let [x0, y0, x1, y1] = numbers[..] else { return Err("select within takes two corners: X Y X Y".into()) };
+    let corners = Rect::from_points((x0, y0), (x1, y1));
+    let sheet = state.sheet();
+    let stands = |row: &usize| sheet.pointer(*row).and_then(|pointer| place::seen(state, &pointer));
+    let standing: Vec<(usize, Point)> = (0..sheet.len()).filter_map(|row| Some((row, stands(&row)?))).collect();
+    let found: BTreeSet<usize> = standing.iter().filter(|(_, at)| corners.contains(*at)).map(|(row, _)| *row).collect();
+    match standing.len() {
+        0 => Err("no row here stands in the picture: go to a list of points first".into()),
+        all if found.is_empty() => Err(format!("none of {} is there", counted(all, "row"))),
+        all => {
+            state.say(format!("{} of {} selected", found.len(), counted(all, "row")));
+            state.cursor.row = found.first().copied().unwrap_or(state.cursor.row);
+            state.cursor.pick(found);
+            state.cursor.focus = Pane::Table;
+            state.ask(Effect::Show);
+            Ok(())
+        }
+    }
 }
 
 fn toggle(state: &mut State, call: &Call) -> Done {

@@ -98,6 +98,7 @@ const OWN: &[KeyRow] = &[
     row(EVERYWHERE, "g o", "jumps newer", "Go forward again along the jumps"),
     row(EVERYWHERE, "G", "move last", "Go to the last row, or to the row of the count"),
     row(EVERYWHERE, "g -", "earlier", "Go to the previous state in time, in whatever branch of undo it is"),
+    row(EVERYWHERE, "g a", "flip", "Flip between the snapshot (:snapshot) and the scene as it was before"),
     row(EVERYWHERE, "g +", "later", "Go to the next state in time, in whatever branch of undo it is"),
     row(EVERYWHERE, "g p", "probe", "Open or close the read-out of the pixel under the picture's cursor"),
     row(EVERYWHERE, "g d", "problem next", "Go to the next place where something is wrong"),

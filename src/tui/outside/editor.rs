@@ -25,7 +25,7 @@ use crate::tui::graphics;
 use crate::tui::graphics::request::Request;
 use crate::tui::layout::picture;
 use crate::tui::state::tutor::Tutor;
-use crate::tui::state::{Message, Mode, State, USUAL, kept};
+use crate::tui::state::{Message, Mode, Pane, State, USUAL, kept};
 use crate::tui::text::color::Depth;
 use crate::tui::text::plain;
 use std::path::Path;
@@ -254,6 +254,8 @@ impl Editor {
         for effect in effects {
             self.perform(effect);
         }
+        let in_picture = self.state.cursor.focus == Pane::Picture;
+        self.preview.cursor(in_picture.then_some(self.state.picture.cursor).map(|at| (at.x, at.y)));
     }
 
     /// Begins the script of a file.

@@ -23,6 +23,10 @@ pub struct Memory {
     pub lines: Vec<String>,
     /// The log, macros and the last change.
     pub recorder: Recorder,
+    /// States of the history that were kept, by their letters.
+    pub snapshots: BTreeMap<char, usize>,
+    /// The state from which a snapshot was flipped to last.
+    pub flipped_from: Option<usize>,
     /// What was yanked last.
     pub yanked: Option<Yanked>,
     /// What was yanked into registers, by their letters.

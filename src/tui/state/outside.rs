@@ -30,6 +30,8 @@ pub struct Outside {
     pub window: String,
     /// Where the pointer is in the window, in pixels of the picture.
     pub pointer: Option<(f64, f64)>,
+    /// What a window's mouse drags, and the revision of the scene when that began.
+    pub dragged: Option<(String, u64)>,
     /// The camera that a window shows, where it is not the scene's: what was said last, if there are several windows.
     pub camera: Option<Camera>,
 }

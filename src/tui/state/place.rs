@@ -164,7 +164,7 @@ fn add_to(state: &State, list: &str, index: usize) -> Option<(Edit, String)> {
 }
 
 /// Where what is at `pointer` is in the picture.
-fn seen(state: &State, pointer: &str) -> Option<Point> {
+pub fn seen(state: &State, pointer: &str) -> Option<Point> {
     let in_space = || spatial::seen(state, spatial::place(state, state.document(), pointer)?.1);
     place(state.document(), pointer).map(|(_, at)| at).or_else(in_space)
 }

@@ -73,6 +73,7 @@ pub fn what_is_outside_is_asked_for() {
         ("keys reload", "Keymap"),
         ("log a", "Write(\"a\", \"\")"),
         ("view", "View(None)"),
+        ("shot", "View(Some(\"shot\"))"),
         ("view view-field", "View(Some(\"view-field on\"))"),
         ("render -o \"a b.gif\"", "Run([\"render\", \"-o\", \"a b.gif\"])"),
     ] {

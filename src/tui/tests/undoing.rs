@@ -67,6 +67,14 @@ pub fn undo_says_what_it_undid() {
         ("/ \"radius\" Enter + u k j + 2 g -", "undone: left eye · radius 60 → 61"),
         ("/ \"radius\" Enter + u k j + : \"undo #1\" Enter", "at #1 of 2: left eye · radius 60 → 61"),
         (": \"undo #1\" Enter", "there is no state #1: there are #0 to #0"),
+        ("/ \"radius\" Enter : \"snapshot\" Enter + g a", "snapshot a (g a flips)"),
+        (
+            "/ \"radius\" Enter : \"snapshot b\" Enter + : \"flip b\" Enter : \"flip b\" Enter",
+            "as it is without snapshot b",
+        ),
+        (": \"snapshot\" Enter g a", "the scene is as in snapshot a: edit it first"),
+        ("g a", "there is no snapshot a: :snapshot a keeps the scene as it is"),
+        (": \"snapshot A\" Enter", "a snapshot has a letter from a to z, not A"),
         ("g +", "nothing to redo"),
         (": \"undo x\" Enter", "x is not a number of steps"),
         (": \"earlier 3w\" Enter", "3w is not a time"),
@@ -76,6 +84,20 @@ pub fn undo_says_what_it_undid() {
         press(&mut state, keys);
         assert!(said_last(&state).1.starts_with(words), "{keys}: {}", said_last(&state).1);
     }
+}
+
+#[test]
+fn a_snapshot_is_flipped_to_and_back_and_loses_nothing() {
+    let mut state = state();
+    let radius = |state: &State| state.document().json().pointer(&zone("/interpolation/radius")).cloned();
+    press(&mut state, "/ \"radius\" Enter : \"snapshot\" Enter + +");
+    let seen = |state: &mut State, keys: &str| {
+        press(state, keys);
+        radius(state).unwrap()
+    };
+    assert_eq!(["g a", "g a", "g a"].map(|keys| seen(&mut state, keys)), [60, 62, 60].map(|n| json!(n)));
+    // What is edited at the snapshot is a branch of its own.
+    assert_eq!(["- -", "g a", "g a"].map(|keys| seen(&mut state, keys)), [58, 60, 58].map(|n| json!(n)));
 }
 
 #[test]

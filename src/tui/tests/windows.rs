@@ -86,6 +86,47 @@ fn what_is_selected_in_a_window_is_shown() {
 }
 
 #[test]
+fn what_a_window_drags_is_one_step_of_undo_and_one_line() {
+    let mut state = state();
+    let before = state.document().json().clone();
+    let at = zone("/motion/0/at");
+    let say = |state: &mut State, verb: &str, (x, y): (f64, f64)| {
+        update(state, said(ToEditor::Pointer { x, y }));
+        update(state, said(ToEditor::Command(format!("{verb} {at}"))));
+        state.document().json().pointer(&at).cloned().unwrap()
+    };
+    assert_eq!(say(&mut state, "drag", (12.5, 13.0)), json!([12.5, 13]));
+    assert_eq!((&state.cursor.node, state.cursor.row), (&zone("/motion"), 0), "its numbers are seen");
+    assert_eq!(say(&mut state, "drag", (13.5, 14.0)), json!([13.5, 14]));
+    assert_eq!(say(&mut state, "drop", (14.5, 15.5)), json!([14.5, 15.5]));
+    let line = state.memory.recorder.log().last().cloned().unwrap_or_default();
+    assert!(line.starts_with("set ") && line.ends_with(".at=[14.5,15.5]"), "{line}");
+    say(&mut state, "drag", (1.0, 1.0));
+    update(&mut state, said(ToEditor::Command("undrag".into())));
+    assert_eq!(state.document().json().pointer(&at), Some(&json!([14.5, 15.5])), "as if it had not been");
+    press(&mut state, "u");
+    assert_eq!(state.document().json(), &before);
+    press(&mut state, ":");
+    assert_eq!(say(&mut state, "drag", (3.0, 3.0)), before.pointer(&at).cloned().unwrap(), "something is being typed");
+}
+
+#[test]
+fn a_box_that_a_window_draws_selects_the_points_in_it() {
+    for (keys, corners, rows) in [
+        (motion(""), "15 15 35 30", Some(vec![0, 1, 3])),
+        (motion(""), "35 30 15 15", Some(vec![0, 1, 3])),
+        (String::new(), "28 23 32 27", Some(vec![1, 3])),
+        (motion(""), "90 90 91 91", None),
+    ] {
+        let mut state = state();
+        press(&mut state, &keys);
+        update(&mut state, said(ToEditor::Command(format!("band {corners}"))));
+        let selected = state.cursor.selects().then(|| state.cursor.rows().into_iter().collect::<Vec<_>>());
+        assert_eq!(selected, rows, "{keys} {corners}: {:?}", state.message);
+    }
+}
+
+#[test]
 fn the_pointer_goes_into_the_entry() {
     let at = |field: &str| zone(&format!("/motion/0/{field}"));
     for (keys, pointer, expected) in [
