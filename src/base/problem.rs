@@ -101,7 +101,7 @@ impl fmt::Display for Problem {
     }
 }
 
-/// The name most like a word, if one is: a few letters are wrong, or one begins with the other. Long words and long lists, which
+/// The name most like a word, if one is: a few letters are wrong, or both begin alike. Long words and long lists, which
 /// only a hostile file has, are not compared.
 pub fn like<'a>(word: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     const LONGEST: usize = 100;
@@ -122,7 +122,7 @@ pub fn like<'a>(word: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a 
         let alike = strsim::normalized_damerau_levenshtein(word, name);
         let first = word.chars().zip(name.chars()).take(FIRST.0).take_while(|(a, b)| a == b).count();
         let least = if first > 0 { LEAST } else { LEAST_OTHER };
-        (alike > least || begins(name)).then_some((alike + FIRST.1 * first as f64, name))
+        (alike > least || begins(name) || first == FIRST.0).then_some((alike + FIRST.1 * first as f64, name))
     });
     scored.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, name)| name)
 }
@@ -158,12 +158,13 @@ mod tests {
 
     #[test]
     fn a_guess_that_is_no_help_is_none() {
-        let known = ["rotate", "position", "scale", "front view", "uv"];
+        let known = ["rotate", "position", "scale", "front view", "uv", "curvature"];
         for (word, guess) in [
             ("rotation", Some("rotate")),
             ("positon", Some("position")),
             ("front", Some("front view")),
             ("scales", Some("scale")),
+            ("curve", Some("curvature")),
             ("relation", None),
             ("osition", Some("position")),
             ("scene", None),

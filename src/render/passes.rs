@@ -308,6 +308,21 @@ fn hue(number: u32) -> [u8; 3] {
 mod tests {
     use super::*;
 
+    #[cfg(feature = "window")]
+    #[test]
+    fn passes_in_which_nothing_is_are_not_offered() {
+        for (layer, passes) in [
+            (r#"{ "kind": "mesh", "name": "a", "mesh": "m" }"#, &["depth", "normal", "uv", "object", "shade"][..]),
+            (r#"{ "kind": "waterfall", "name": "a", "clip": "c" }"#, &["lines", "sprites"]),
+            (r##"{ "kind": "fill", "name": "a", "color": "#102030" }"##, &[]),
+        ] {
+            let scene: Scene = serde_json::from_str(&format!(r#"{{ "plica": 1, "layers": [{layer}] }}"#)).unwrap();
+            assert_eq!(shown(&scene), passes, "{layer}");
+            let depth = Asked::parse("depth", &scene).unwrap();
+            assert_eq!(depth.emptiness(&scene).is_none(), passes.contains(&"depth"), "{layer}");
+        }
+    }
+
     #[test]
     fn depth_to_look_at_uses_all_grays_between_the_nearest_and_the_farthest() {
         let cells = [0.0, 5.0, 5.1, 5.2].map(|v: f32| [v, v, v, if v > 0.0 { 1.0 } else { 0.0 }]);

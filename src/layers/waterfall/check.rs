@@ -66,7 +66,7 @@ fn of_sprites(layer: &WaterfallLayer) -> Vec<Problem> {
     }
     let bytes = bytes_of(sprites);
     if bytes > MOST_BYTES {
-        let message = format!("keys of {} (limit {})", size(bytes), size(MOST_BYTES));
+        let message = format!("its keys take {}, and {} is the most", size(bytes), size(MOST_BYTES));
         problems.push(Problem::error("/sprites", message).hint(enough(sprites)));
     }
     problems
@@ -128,7 +128,7 @@ fn of_lines(layer: &WaterfallLayer) -> Vec<Problem> {
 fn too_many(count: f64) -> Option<Problem> {
     let message = || {
         let (count, most) = (count / 1e6, MOST_SPRITES / 1e6);
-        format!("{count:.1} million sprites at once (limit {most} million)")
+        format!("{count:.1} million sprites at once, and {most} million is the most")
     };
     (count > MOST_SPRITES).then(|| Problem::error("/lines", message()).hint("lower lines, rate or life"))
 }
