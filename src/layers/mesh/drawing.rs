@@ -1,4 +1,4 @@
-//! What a mesh asks of what is drawn on it: in the document ([`Drawing`]), and made ([`ReadyDrawing`]); and what it hands out
+//! What a mesh asks of what is drawn on it: in the document ([`DrawingSlot`]), and made ([`ReadyDrawing`]); and what it hands out
 //! for that ([`Given`]).
 
 use std::any::Any;
@@ -24,7 +24,7 @@ use crate::layers::ready::Making;
 use crate::layers::space::eye::Eye;
 
 /// The interface of what is drawn on a mesh, in the document. Paths are relative to it.
-pub trait Drawing {
+pub trait DrawingSlot {
     /// The checks beyond shape.
     fn check(&self) -> Vec<Problem>;
 

@@ -14,8 +14,8 @@ pub mod plan;
 pub mod pose;
 pub mod probe;
 pub mod ready;
-pub mod slot;
 pub mod slots;
+pub mod surface;
 pub mod synth;
 mod unseen;
 
@@ -25,7 +25,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use kurbo::Rect;
 use serde_json::{Value, json};
 
-use self::drawing::Drawing;
+use self::drawing::DrawingSlot;
 use self::model::MeshLayer;
 use super::parts::materials::{List, Materials, Of, Use, What};
 use super::parts::measures::Measures;
@@ -104,7 +104,7 @@ impl Technique for MeshLayer {
     }
 
     fn moves(&self) -> bool {
-        let (pose, redrawn) = (&self.pose, self.drawing().is_some_and(Drawing::moves));
+        let (pose, redrawn) = (&self.pose, self.drawing().is_some_and(DrawingSlot::moves));
         pose.spin != 0.0 || pose.bend.swing * pose.bend.degrees != 0.0 || redrawn
     }
 
@@ -131,7 +131,7 @@ impl Technique for MeshLayer {
         let mesh = Use { at: "/mesh".into(), of: Of::Name(List::Meshes, &self.mesh), what: What::Mesh };
         let surface = self.surface.slot().uses().into_iter();
         let surface = surface.map(|used| Use { at: format!("/surface{}", used.at), ..used });
-        let strokes = self.drawing().into_iter().flat_map(Drawing::uses);
+        let strokes = self.drawing().into_iter().flat_map(DrawingSlot::uses);
         let strokes = strokes.map(|used| Use { at: format!("/strokes{}", used.at), ..used });
         std::iter::once(mesh).chain(surface).chain(strokes).collect()
     }
@@ -157,7 +157,7 @@ impl Technique for MeshLayer {
     }
 
     fn sketched(&self) -> &'static [&'static str] {
-        self.drawing().map(Drawing::sketched).unwrap_or_default()
+        self.drawing().map(DrawingSlot::sketched).unwrap_or_default()
     }
 
     fn sketch(&self, path: &str) -> Option<Sketch> {

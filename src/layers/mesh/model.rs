@@ -4,7 +4,7 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::drawing::Drawing;
+use super::drawing::DrawingSlot;
 use super::pose::Pose;
 use super::slots::{Strokes, Surface};
 use crate::base::geometry::Xyz;
@@ -82,13 +82,13 @@ impl MeshLayer {
             problems.push(problem.hint("make it [0, -1, 0] for light from above"));
         }
         problems.extend(self.surface.slot().check().into_iter().map(|problem| problem.under("/surface")));
-        let drawn = self.drawing().into_iter().flat_map(Drawing::check);
+        let drawn = self.drawing().into_iter().flat_map(DrawingSlot::check);
         problems.extend(drawn.map(|problem| problem.under("/strokes")));
         problems
     }
 
     /// What is drawn on it, if something is.
-    pub fn drawing(&self) -> Option<&dyn Drawing> {
+    pub fn drawing(&self) -> Option<&dyn DrawingSlot> {
         self.strokes.as_ref().map(Strokes::slot)
     }
 }

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::drawing::{Given, ReadyDrawing};
 use super::model::Sides;
 use super::pose::Placed;
-use super::slot::{Look, Own};
+use super::surface::{Look, Own};
 use super::synth::Synth;
 use crate::base::pixels::Rgba;
 use crate::layers::parts::moment::Moment;

@@ -7,7 +7,7 @@ use kurbo::Vec2;
 use super::drawing::ReadyDrawing;
 use super::model::{Light, MeshLayer, Sides};
 use super::pose::Pose;
-use super::slot::ReadySurface;
+use super::surface::ReadySurface;
 use crate::base::mesh::Mesh;
 use crate::base::problem::Problem;
 use crate::layers::parts::moment::{CENTER, Moment};

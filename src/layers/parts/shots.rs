@@ -71,12 +71,16 @@ pub enum Feeds {
 }
 
 impl Feeds {
-    /// The document's words, in the order of the enum.
-    pub const WORDS: [&str; 3] = ["both", "independent", "dependent"];
+    /// All of it.
+    pub const ALL: [Feeds; 3] = [Feeds::Both, Feeds::Independent, Feeds::Dependent];
 
     /// The document's word for it.
     pub fn word(self) -> &'static str {
-        Feeds::WORDS[self as usize]
+        match self {
+            Feeds::Both => "both",
+            Feeds::Independent => "independent",
+            Feeds::Dependent => "dependent",
+        }
     }
 }
 
@@ -195,9 +199,9 @@ mod tests {
 
     #[test]
     fn what_a_view_feeds_is_called_as_in_the_document() {
-        for feeds in [Feeds::Both, Feeds::Independent, Feeds::Dependent] {
-            assert_eq!(serde_json::to_value(feeds).unwrap(), feeds.word());
-        }
+        let schema = serde_json::to_value(schemars::schema_for!(Feeds)).unwrap();
+        let words = schema["oneOf"].as_array().unwrap().iter().map(|one| one["const"].as_str().unwrap());
+        assert_eq!(Feeds::ALL.map(Feeds::word).to_vec(), words.collect::<Vec<_>>());
     }
 
     #[test]

@@ -39,7 +39,7 @@ pub struct Args {
     #[arg(long, value_name = "DEGREES")]
     fov: Option<f64>,
     /// What the view feeds
-    #[arg(long, value_name = "KIND", value_parser = Feeds::WORDS)]
+    #[arg(long, value_name = "KIND", value_parser = Feeds::ALL.map(Feeds::word))]
     kind: Option<String>,
     #[command(flatten)]
     recovery: RecoveryOptions,

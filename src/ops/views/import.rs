@@ -34,7 +34,7 @@ pub struct Args {
     #[arg(long, value_name = "DIR")]
     images: Option<PathBuf>,
     /// What the views feed
-    #[arg(long, value_name = "KIND", value_parser = Feeds::WORDS)]
+    #[arg(long, value_name = "KIND", value_parser = Feeds::ALL.map(Feeds::word))]
     kind: Option<String>,
     /// Take every Nth picture only
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]

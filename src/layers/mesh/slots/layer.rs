@@ -12,7 +12,7 @@ use crate::base::pixels::{Linear, Rgba, bilinear_repeated};
 use crate::base::problem::Problem;
 use crate::base::reduce::Reduced;
 use crate::layers::mesh::pose::Placed;
-use crate::layers::mesh::slot::{Before, Look, Reader, ReadySurface, Slot, StillSurface, place};
+use crate::layers::mesh::surface::{Before, Look, Reader, ReadySurface, StillSurface, SurfaceSlot, place};
 use crate::layers::parts::materials::{List, Of, Use, What};
 use crate::layers::parts::moment::{Columns, Moment};
 use crate::layers::parts::plan::{Bind, DrawnTexture};
@@ -27,7 +27,7 @@ pub struct LayerSurface {
     pub layer: String,
 }
 
-impl Slot for LayerSurface {
+impl SurfaceSlot for LayerSurface {
     fn uses(&self) -> Vec<Use<'_>> {
         vec![Use { at: "/layer".into(), of: Of::Name(List::Layers, &self.layer), what: What::Layer }]
     }

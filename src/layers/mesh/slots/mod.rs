@@ -14,8 +14,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::added::Added;
-use super::drawing::Drawing;
-use super::slot::Slot;
+use super::drawing::DrawingSlot;
+use super::surface::SurfaceSlot;
 use crate::layers::parts::shots::{Laid, Laying};
 use crate::layers::starts::Shown;
 
@@ -46,7 +46,7 @@ impl Default for Surface {
 
 impl Surface {
     /// The surface as its kind.
-    pub fn slot(&self) -> &dyn Slot {
+    pub fn slot(&self) -> &dyn SurfaceSlot {
         match self {
             Surface::Plain(surface) => surface,
             Surface::Texture(surface) => surface,
@@ -85,7 +85,7 @@ impl JsonSchema for Strokes {
 
 impl Strokes {
     /// As what is drawn on a mesh.
-    pub fn slot(&self) -> &dyn Drawing {
+    pub fn slot(&self) -> &dyn DrawingSlot {
         &self.0
     }
 }

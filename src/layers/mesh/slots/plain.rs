@@ -12,7 +12,7 @@ use crate::base::problem::Problem;
 use crate::base::reduce::Reduced;
 use crate::layers::check;
 use crate::layers::mesh::pose::Placed;
-use crate::layers::mesh::slot::{Before, Look, Reader, ReadySurface, Slot, StillSurface};
+use crate::layers::mesh::surface::{Before, Look, Reader, ReadySurface, StillSurface, SurfaceSlot};
 use crate::layers::parts::moment::Moment;
 use crate::layers::ready::Making;
 
@@ -30,7 +30,7 @@ impl Default for Plain {
     }
 }
 
-impl Slot for Plain {
+impl SurfaceSlot for Plain {
     fn check(&self) -> Vec<Problem> {
         check::color(&self.color, "/color").into_iter().collect()
     }

@@ -12,7 +12,7 @@ use crate::base::pixels::Rgba;
 use crate::base::problem::Problem;
 use crate::base::reduce::Reduced;
 use crate::layers::mesh::pose::Placed;
-use crate::layers::mesh::slot::{Before, Look, Reader, ReadySurface, Slot, StillSurface, place};
+use crate::layers::mesh::surface::{Before, Look, Reader, ReadySurface, StillSurface, SurfaceSlot, place};
 use crate::layers::parts::materials::{List, Of, Use, What};
 use crate::layers::parts::moment::Moment;
 use crate::layers::parts::plan::Bind;
@@ -27,7 +27,7 @@ pub struct Texture {
     pub image: String,
 }
 
-impl Slot for Texture {
+impl SurfaceSlot for Texture {
     fn uses(&self) -> Vec<Use<'_>> {
         vec![Use { at: "/image".into(), of: Of::Name(List::Images, &self.image), what: What::Picture }]
     }

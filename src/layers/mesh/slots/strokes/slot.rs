@@ -12,7 +12,7 @@ use crate::base::mesh::Mesh;
 use crate::base::pixels::Rgba;
 use crate::base::problem::Problem;
 use crate::layers::mesh::added::Added;
-use crate::layers::mesh::drawing::{Before, Drawing, Given, Looking, ReadyDrawing};
+use crate::layers::mesh::drawing::{Before, DrawingSlot, Given, Looking, ReadyDrawing};
 use crate::layers::parts::marks::{Mark, View};
 use crate::layers::parts::materials::{List, Of, Use, What};
 use crate::layers::parts::measures::Measures;
@@ -38,7 +38,7 @@ pub const ADDED: Added = Added {
     ..Added::NONE
 };
 
-impl Drawing for Strokes {
+impl DrawingSlot for Strokes {
     fn check(&self) -> Vec<Problem> {
         check::problems(self)
     }

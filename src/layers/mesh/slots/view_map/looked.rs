@@ -8,7 +8,7 @@ use super::id::{depth_of, share_of};
 use super::map::Map;
 use super::sample::{Reader, Spot};
 use crate::layers::mesh::pose::Placed;
-use crate::layers::mesh::slot::SurfacePoint;
+use crate::layers::mesh::surface::SurfacePoint;
 use crate::layers::parts::moment::Moment;
 use crate::layers::space::eye::Eye;
 use crate::layers::space::raster::NONE;

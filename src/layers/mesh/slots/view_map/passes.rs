@@ -2,7 +2,7 @@
 
 use super::looked::Looked;
 use crate::base::pixels::linear_from_srgb;
-use crate::layers::mesh::slot::Reader;
+use crate::layers::mesh::surface::Reader;
 use crate::layers::parts::pass::{Holds, Pass};
 
 /// The base coat.

@@ -7,7 +7,7 @@ use super::arrays::Arrays;
 use super::map::Map;
 use super::upload::{CHARTS, ELEMENTS, ENTRIES, SQUARES, STARTS, TURNS};
 use super::view::{Extremes, View};
-use crate::layers::mesh::slot::{Look, Own};
+use crate::layers::mesh::surface::{Look, Own};
 use crate::layers::parts::plan::{Bind, COMMON, Program};
 use crate::layers::parts::twin::{Twin, twin};
 

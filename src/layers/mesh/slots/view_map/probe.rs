@@ -4,7 +4,7 @@ use super::cells::{Cell, NONE};
 use super::frames;
 use super::looked::Looked;
 use crate::base::pixels::encode;
-use crate::layers::mesh::slot::SurfacePoint;
+use crate::layers::mesh::surface::SurfacePoint;
 use crate::layers::parts::readout::{Entry, Value};
 
 /// The least share of a view that is told.

@@ -16,7 +16,7 @@ use crate::base::pixels::Linear;
 use crate::base::problem::Problem;
 use crate::base::reduce::Reduced;
 use crate::layers::mesh::pose::Placed;
-use crate::layers::mesh::slot::{Look, Reader, ReadySurface, StillSurface, SurfacePoint};
+use crate::layers::mesh::surface::{Look, Reader, ReadySurface, StillSurface, SurfacePoint};
 use crate::layers::parts::bundle::Sink;
 use crate::layers::parts::marks::{Mark, View};
 use crate::layers::parts::moment::Moment;

@@ -16,7 +16,7 @@ use crate::base::budget::Share;
 use crate::base::mesh::Mesh;
 use crate::base::problem::Problem;
 use crate::layers::mesh::added::Added;
-use crate::layers::mesh::slot::{Before, ReadySurface, Slot};
+use crate::layers::mesh::surface::{Before, ReadySurface, SurfaceSlot};
 use crate::layers::parts::bundle::Form;
 use crate::layers::parts::materials::{List, Materials, Of, Use, What};
 use crate::layers::parts::shots::Lying;
@@ -36,7 +36,7 @@ pub const ADDED: Added = Added {
     ..Added::NONE
 };
 
-impl Slot for ViewMap {
+impl SurfaceSlot for ViewMap {
     fn check(&self) -> Vec<Problem> {
         let mut problems = check::problems(self);
         problems.extend(self.levels.and_then(|levels| too_many(self.cells, levels)));

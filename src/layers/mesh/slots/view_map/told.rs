@@ -7,6 +7,7 @@ use super::map::Map;
 use super::view::View;
 use super::{balance, compare, report};
 use crate::base::number;
+use crate::layers::parts::shots::Feeds;
 
 /// An object for each active view, in order, then one for the map; with `compare` also how well each view comes back.
 pub fn told(filled: Filled, compare: bool) -> Vec<Value> {
@@ -43,11 +44,12 @@ pub fn told(filled: Filled, compare: bool) -> Vec<Value> {
 }
 
 fn kind(view: &View) -> &'static str {
-    match (view.base, view.dependent) {
-        (true, true) => "both",
-        (true, false) => "independent",
-        _ => "dependent",
-    }
+    let feeds = match (view.base, view.dependent) {
+        (true, true) => Feeds::Both,
+        (true, false) => Feeds::Independent,
+        (false, _) => Feeds::Dependent,
+    };
+    feeds.word()
 }
 
 /// The gains with which photographs agree: the number of each view in the document, and the gain.

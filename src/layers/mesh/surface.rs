@@ -1,4 +1,4 @@
-//! What a mesh asks of its surface: in the document ([`Slot`]), made ([`ReadySurface`]), and at one time ([`StillSurface`]).
+//! What a mesh asks of its surface: in the document ([`SurfaceSlot`]), made ([`ReadySurface`]), and at one time ([`StillSurface`]).
 
 use std::any::Any;
 use std::fmt::Debug;
@@ -26,7 +26,7 @@ use crate::layers::space::eye::Ray;
 use crate::layers::space::raster::Hit;
 
 /// The interface of a kind of surface in the document. Paths are relative to it.
-pub trait Slot {
+pub trait SurfaceSlot {
     /// The checks beyond shape.
     fn check(&self) -> Vec<Problem> {
         Vec::new()
