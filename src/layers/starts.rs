@@ -11,14 +11,14 @@ pub struct Template {
     /// The list of the scene that this is in.
     pub of: List,
     /// The layer, called as what it shows.
-    pub layer: fn(shown: &Shown) -> Value,
+    pub layer: fn(shown: &NewLayer) -> Value,
     /// The background of a new scene on which it is seen best, if nothing else is in the scene.
     pub ground: Option<&'static str>,
 }
 
 /// What a new layer shows.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Shown<'a> {
+pub struct NewLayer<'a> {
     /// Its name in its list.
     pub name: &'a str,
     /// Width and height of its frames in pixels, as far as they are known.

@@ -73,7 +73,19 @@ fn header(entries: &[Entry]) -> String {
             format!("{:>1$}", format!("{}, {unit}", entry.label), numbers.len() * (OF_THREE + 1) - 1)
         }
         Value::Index(_) => format!("{:>OF_THREE$}", entry.label),
-        _ => format!("{:>WIDE$}", entry.label),
+        Value::Number(_)
+        | Value::Of(_)
+        | Value::Vector(_)
+        | Value::Place(_)
+        | Value::List(_)
+        | Value::Flag { .. }
+        | Value::Color(_)
+        | Value::Indices(_)
+        | Value::Shares(_)
+        | Value::Group(_)
+        | Value::Items(_) => {
+            format!("{:>WIDE$}", entry.label)
+        }
     });
     heads.collect::<Vec<_>>().join(" ")
 }
@@ -92,7 +104,17 @@ fn row(entries: &[Entry]) -> String {
         Value::Number(number) => format!("{:>WIDE$}", short(*number, 3)),
         Value::Index(index) => format!("{index:>OF_THREE$}"),
         Value::Of(Some(word)) => format!("{word:>WIDE$}"),
-        _ => " ".repeat(WIDE),
+        // Of flow lines nothing else is told.
+        Value::Of(None)
+        | Value::Vector(_)
+        | Value::Place(_)
+        | Value::List(_)
+        | Value::Flag { .. }
+        | Value::Color(_)
+        | Value::Indices(_)
+        | Value::Shares(_)
+        | Value::Group(_)
+        | Value::Items(_) => " ".repeat(WIDE),
     });
     cells.collect::<Vec<_>>().join(" ")
 }

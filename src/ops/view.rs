@@ -40,7 +40,7 @@ pub struct Args {
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let options = args.options.options()?;
     let most = usize::try_from(options.limits.texture).unwrap_or(usize::MAX);
-    let shots = shots(&args.scene);
+    let screenshots = screenshots(&args.scene);
     let (name, link, load) = match args.scene.to_str().filter(|text| text.starts_with(SCHEME)) {
         Some(address) => there(Way::to(Address::parse(address)?, args.remote_plica, &options), context)?,
         None => here(&args.scene, args.joined, options)?,
@@ -48,7 +48,13 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     context.check_cancelled()?;
     window::run(window::Setup {
         // The editor reports problems itself.
-        manner: window::Manner { name, shots, most, takes_keyboard: !args.joined, complains: !args.joined },
+        options: window::WindowOptions {
+            name,
+            screenshots,
+            most,
+            takes_keyboard: !args.joined,
+            complains: !args.joined,
+        },
         updates: link.updates,
         replies: link.replies,
         cancel: context.cancel.clone(),
@@ -56,8 +62,8 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     })
 }
 
-/// What the names of shots begin with: they lie beside the scene, or here if that is on another machine.
-fn shots(scene: &Path) -> PathBuf {
+/// What the names of screenshots begin with: they lie beside the scene, or here if that is on another machine.
+fn screenshots(scene: &Path) -> PathBuf {
     let name = scene.file_name().unwrap_or_default().to_string_lossy();
     let stem = [".plica.json", ".json"].into_iter().find_map(|end| name.strip_suffix(end)).unwrap_or(&name);
     if scene.to_string_lossy().starts_with(SCHEME) { stem.into() } else { scene.with_file_name(stem) }

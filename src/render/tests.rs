@@ -63,11 +63,11 @@ fn things() -> Mesh {
 }
 
 /// What a ray shows: depth, normal, layer from 1 and triangle from 1.
-type Shown = Option<(f64, DVec3, usize, usize)>;
+type Hit = Option<(f64, DVec3, usize, usize)>;
 
 /// The nearest of all triangles along a ray that gains one meter of depth with each of its lengths (Möller and Trumbore).
-fn cast(meshes: &[(Mesh, bool)], from: DVec3, along: DVec3) -> Shown {
-    let mut nearest: Shown = None;
+fn cast(meshes: &[(Mesh, bool)], from: DVec3, along: DVec3) -> Hit {
+    let mut nearest: Hit = None;
     for (layer, (mesh, both)) in meshes.iter().enumerate() {
         for (number, corners) in mesh.triangles.iter().enumerate() {
             let [a, b, c] = corners.map(|corner| mesh.vertices[corner as usize]);

@@ -41,7 +41,8 @@ pub fn values(document: &Document, typed: &str) -> Vec<String> {
             _ => Vec::new(),
         },
         Some(Kind::Bool) => vec!["true".into(), "false".into()],
-        _ => Vec::new(),
+        Some(Kind::Number { .. } | Kind::Numbers(_) | Kind::Text | Kind::List(_) | Kind::Map(_)) => Vec::new(),
+        Some(Kind::Object | Kind::Tagged { .. }) | None => Vec::new(),
     };
     known.into_iter().filter(|name| name.starts_with(value)).collect()
 }

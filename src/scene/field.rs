@@ -177,7 +177,7 @@ pub fn layer_of<'a>(document: &'a Document, pointer: &'a str) -> Option<(&'a dyn
 /// The value that its layer, or the scene, has for a place, if that is not in the schema.
 pub fn in_force(document: &Document, pointer: &str) -> Option<Value> {
     let scene = document.scene();
-    if let Some(way) = pointer.strip_prefix("/camera") {
+    if let Some(way) = Pointer(pointer).below("/camera") {
         return scene.camera.as_ref()?.automatic(way);
     }
     if pointer == "/size" {

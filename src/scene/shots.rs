@@ -12,7 +12,7 @@ use crate::base::problem::{Problem, quoted};
 use crate::base::text::counted;
 use crate::layers::parts::materials::{List, Of, What};
 use crate::layers::parts::shots::{Laid, Laying, SeenFrom, Shot};
-use crate::layers::starts::Shown;
+use crate::layers::starts::NewLayer;
 use crate::layers::technique::Kind;
 use crate::layers::{KINDS, Layer};
 
@@ -79,7 +79,7 @@ pub fn add_mesh(document: &Document, name: &str, path: &str) -> Option<(Edit, us
     let (_, called) = Pointer(&at).split()?;
     let makes = |kind: &&&Kind| kind.template.is_some_and(|template| template.of == List::Meshes);
     let template = KINDS.iter().find(makes)?.template?;
-    let layer = (template.layer)(&Shown { name: &called, ..Shown::default() });
+    let layer = (template.layer)(&NewLayer { name: &called, ..NewLayer::default() });
     let index = document.scene().layers.len();
     let (layer, _) = Edit::insert_all(document, "/layers", index, vec![layer])?;
     Some((Edit::all([mesh, layer]), index))

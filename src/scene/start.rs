@@ -21,7 +21,7 @@ use crate::layers::parts::materials::{List, Materials};
 use crate::layers::parts::moment::Space;
 use crate::layers::space::camera::Camera;
 use crate::layers::space::fit::{fit, short};
-use crate::layers::starts::Shown;
+use crate::layers::starts::NewLayer;
 use crate::layers::technique::Kind;
 
 /// Where a new camera sees meshes from.
@@ -111,7 +111,7 @@ impl Start {
     pub fn picture(mut self, name: &str, path: &str, size_px: (usize, usize)) -> Start {
         let image = self.image(name, path);
         self.frame.get_or_insert(size_px);
-        self.layer(List::Images, &Shown { name: &image, size_px, ..Shown::default() });
+        self.layer(List::Images, &NewLayer { name: &image, size_px, ..NewLayer::default() });
         self
     }
 
@@ -121,7 +121,7 @@ impl Start {
         let mesh = self.put(List::Meshes, name, json!({ "path": path }));
         let image = picture.map(|(name, path)| self.image(name, path));
         self.meshes.extend(known.map(|known| (mesh.clone(), Arc::new(known))));
-        let shown = Shown { name: &mesh, image: image.as_deref(), color, both_sides, ..Shown::default() };
+        let shown = NewLayer { name: &mesh, image: image.as_deref(), color, both_sides, ..NewLayer::default() };
         self.layer(List::Meshes, &shown);
         self
     }
@@ -133,8 +133,9 @@ impl Start {
             clip["first"] = first.into();
         }
         let clip = self.put(List::Clips, name, clip);
-        let plain = Shown { name: &clip, ..Shown::default() };
-        let fitted = |Known { size_px, frames, is_still }| Shown { size_px, frames: Some(frames), is_still, ..plain };
+        let plain = NewLayer { name: &clip, ..NewLayer::default() };
+        let fitted =
+            |Known { size_px, frames, is_still }| NewLayer { size_px, frames: Some(frames), is_still, ..plain };
         let shown = known.map_or(plain, fitted);
         self.layer(List::Clips, &shown);
         self
@@ -189,13 +190,13 @@ impl Start {
     }
 
     /// Adds a layer of the first technique that makes one of what is in this list.
-    fn layer(&mut self, list: List, shown: &Shown) {
+    fn layer(&mut self, list: List, shown: &NewLayer) {
         let makes = |kind: &&&Kind| kind.template.is_some_and(|template| template.of == list);
         let Some((kind, template)) = KINDS.iter().find(makes).and_then(|kind| Some((kind, kind.template?))) else {
             return;
         };
         let mut layer = (template.layer)(shown);
-        let plain = (template.layer)(&Shown { size_px: (0, 0), frames: None, is_still: false, ..*shown });
+        let plain = (template.layer)(&NewLayer { size_px: (0, 0), frames: None, is_still: false, ..*shown });
         let fields = layer.as_object().into_iter().flatten().filter(|(name, value)| plain.get(name) != Some(*value));
         let fields: Map<String, Value> = fields.map(|(name, value)| (name.clone(), value.clone())).collect();
         self.fitted = (!fields.is_empty()).then(|| Value::Object(fields).to_string());

@@ -59,7 +59,9 @@ fn change(moving: &mut Moving, mover: Mover, shape: Shape, value: &mut Value) ->
                 field.map_or(Ok(()), |field| change(moving, mover, field, value))?;
             }
         }
-        _ => {}
+        // What is no place and no length stays; so does what is not written as the schema has it.
+        (Body::Number { .. } | Body::Numbers(_) | Body::Text | Body::Bool | Body::Choice | Body::Row(_), _) => {}
+        (Body::List(..) | Body::Map(_) | Body::Object | Body::Tagged(_), _) => {}
     }
     Ok(())
 }

@@ -3,7 +3,7 @@
 use kurbo::{Point, Vec2};
 
 use super::letters;
-use super::strokes::{Mark, draw_arrow, fill, line, turned};
+use super::strokes::{PlotMark, draw_arrow, fill, line, turned};
 use crate::base::maths::nice;
 use crate::base::oklab::hue;
 use crate::base::text::short;
@@ -13,7 +13,7 @@ const INK: [u8; 4] = [60, 64, 72, 255];
 const SHORTEST: f64 = 1e-6;
 
 /// The wheel of directions, an arrow of a round length with what it stands for, and a bar for distances in the picture.
-pub fn legend(at: Point, stretch: f64, longest: f64, scale: f64, marks: &mut Vec<Mark>) {
+pub fn legend(at: Point, stretch: f64, longest: f64, scale: f64, marks: &mut Vec<PlotMark>) {
     let wheel = at + Vec2::new(22.0, 0.0);
     const SPOKES: usize = 24;
     for k in 0..SPOKES {

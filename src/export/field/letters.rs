@@ -3,7 +3,7 @@
 
 use kurbo::{Point, Vec2};
 
-use super::strokes::{Mark, line};
+use super::strokes::{PlotMark, line};
 
 /// The size of a grid step, in pixels of the plot.
 const STEP: f64 = 1.55;
@@ -36,7 +36,7 @@ const LETTERS: [(char, &str); 21] = [
 ];
 
 /// Writes `text` from `at` on, the left end of its base line. Letters that are not in the table are left out.
-pub fn write(text: &str, at: Point, color: [u8; 4], marks: &mut Vec<Mark>) {
+pub fn write(text: &str, at: Point, color: [u8; 4], marks: &mut Vec<PlotMark>) {
     for (k, c) in text.chars().enumerate() {
         let Some((_, strokes)) = LETTERS.iter().find(|(letter, _)| *letter == c) else { continue };
         let corner = at + Vec2::new(k as f64 * ADVANCE * STEP, -6.0 * STEP);

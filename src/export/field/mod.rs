@@ -22,7 +22,7 @@ mod tests;
 
 pub use model::{Arrow, FAINT, Plot};
 pub use raster::png;
-pub use strokes::Mark;
+pub use strokes::PlotMark;
 pub use svg::svg;
 pub use table::csv;
 
@@ -110,7 +110,7 @@ fn part(synth: &Synth, shown: Rect) -> Frame {
 }
 
 /// White over what reaches out of the picture.
-fn margins(frame: Rect, all: Rect) -> impl Iterator<Item = Mark> {
+fn margins(frame: Rect, all: Rect) -> impl Iterator<Item = PlotMark> {
     let sides = [
         Rect::new(all.x0, all.y0, all.x1, frame.y0),
         Rect::new(all.x0, frame.y1, all.x1, all.y1),
@@ -122,7 +122,7 @@ fn margins(frame: Rect, all: Rect) -> impl Iterator<Item = Mark> {
 }
 
 /// What the techniques want to be drawn there, in the look that it has everywhere.
-fn marks_of(scene: &Scene, place: InPlots, plot_from_image: &impl Fn(Point) -> Point) -> Vec<Mark> {
+fn marks_of(scene: &Scene, place: InPlots, plot_from_image: &impl Fn(Point) -> Point) -> Vec<PlotMark> {
     let shown = overlays().filter(|overlay| overlay.in_plots == Some(place)).map(|overlay| overlay.name);
     let view = View::of(&shown.collect::<Vec<_>>());
     let mark = |mark: marks::Mark| {
@@ -131,7 +131,7 @@ fn marks_of(scene: &Scene, place: InPlots, plot_from_image: &impl Fn(Point) -> P
         match mark.shape {
             Shape::Line { points, closed } => {
                 let points = points.into_iter().map(plot_from_image).collect();
-                Some(Mark { points, closed, stroke: Some(look.width_px.into()), color: look.color, dash })
+                Some(PlotMark { points, closed, stroke: Some(look.width_px.into()), color: look.color, dash })
             }
             Shape::Dot(at) => Some(fill(dot(plot_from_image(at), look.dot, f64::from(look.dot_px) * 0.8), look.color)),
             // The arrows of the field say more.

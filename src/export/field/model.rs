@@ -2,7 +2,7 @@
 
 use kurbo::{Point, Rect, Vec2};
 
-use super::strokes::Mark;
+use super::strokes::PlotMark;
 use crate::base::pixels::Frame;
 use crate::layers::parts::readout::vector;
 
@@ -16,7 +16,7 @@ pub struct Plot {
     /// The picture beneath, faint: what it shows and the part of the plot it fills.
     pub picture: Option<(Frame, Rect)>,
     /// What is drawn over it, from below to above.
-    pub marks: Vec<Mark>,
+    pub marks: Vec<PlotMark>,
     /// What it shows, in words.
     pub title: String,
 }

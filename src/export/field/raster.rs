@@ -6,7 +6,7 @@ use tiny_skia::{
     Stroke, StrokeDash, Transform,
 };
 
-use super::strokes::Mark;
+use super::strokes::PlotMark;
 use super::{FAINT, Plot};
 use crate::base::error::{Error, Result};
 use crate::base::pixels::Frame;
@@ -44,7 +44,7 @@ fn draw_picture(frame: &Frame, place: Rect, pixmap: &mut Pixmap) -> Option<()> {
     Some(())
 }
 
-fn draw(mark: &Mark, pixmap: &mut Pixmap) {
+fn draw(mark: &PlotMark, pixmap: &mut Pixmap) {
     let mut builder = PathBuilder::new();
     for (i, point) in mark.points.iter().enumerate() {
         let (x, y) = (point.x as f32, point.y as f32);

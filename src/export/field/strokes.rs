@@ -8,7 +8,7 @@ use crate::layers::parts::marks::Dot;
 
 /// A stroke or a fill, in pixels of the plot.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Mark {
+pub struct PlotMark {
     /// At least two points.
     pub points: Vec<Point>,
     /// Whether the last point joins the first.
@@ -36,17 +36,17 @@ pub fn turned(turns: f64) -> Vec2 {
     Vec2::new(cos(angle), sin(angle))
 }
 
-pub fn fill(points: Vec<Point>, color: [u8; 4]) -> Mark {
-    Mark { points, closed: true, stroke: None, color, dash: None }
+pub fn fill(points: Vec<Point>, color: [u8; 4]) -> PlotMark {
+    PlotMark { points, closed: true, stroke: None, color, dash: None }
 }
 
-pub fn line(points: Vec<Point>, width: f64, color: [u8; 4]) -> Mark {
-    Mark { points, closed: false, stroke: Some(width), color, dash: None }
+pub fn line(points: Vec<Point>, width: f64, color: [u8; 4]) -> PlotMark {
+    PlotMark { points, closed: false, stroke: Some(width), color, dash: None }
 }
 
 /// An arrow with its tail at `at`, colored by its direction; a dot where there is no jump. `room` is the distance of
 /// arrows, which bounds how heavy they look.
-pub fn draw_arrow(at: Point, vector: Vec2, room: f64, marks: &mut Vec<Mark>) {
+pub fn draw_arrow(at: Point, vector: Vec2, room: f64, marks: &mut Vec<PlotMark>) {
     let length = vector.hypot2().sqrt();
     if length < 0.75 {
         marks.push(fill(dot(at, Dot::Disc, 0.9), [120, 126, 136, 200]));

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
 
-use super::strokes::Mark;
+use super::strokes::PlotMark;
 use super::{FAINT, Plot};
 use crate::base::error::{Error, Result};
 use crate::base::text::{self, hex};
@@ -37,7 +37,7 @@ pub fn svg(plot: &Plot) -> Result<String> {
     Ok(text)
 }
 
-fn draw(mark: &Mark, text: &mut String) {
+fn draw(mark: &PlotMark, text: &mut String) {
     let [r, g, b, a] = mark.color;
     *text += "<path d=\"";
     for (i, point) in mark.points.iter().enumerate() {

@@ -8,7 +8,7 @@ use super::model::PictureLayer;
 use super::neat::{corners, middle, neat, neat_pair};
 use super::{interpolation, position, tools};
 use crate::base::pointer::Pointer;
-use crate::layers::starts::Shown;
+use crate::layers::starts::NewLayer;
 
 /// Used in place of a zone where there is none yet.
 const NOWHERE: Rect = Rect::new(0.0, 0.0, 100.0, 100.0);
@@ -51,7 +51,7 @@ pub fn start(variant: &str, field: &str, bounds: Rect) -> Option<Value> {
 }
 
 /// A layer that shows an image, with one zone that covers it.
-pub fn template(shown: &Shown) -> Value {
+pub fn template(shown: &NewLayer) -> Value {
     let (name, (width, height)) = (shown.name, shown.size_px);
     if shown.bare {
         return json!({ "kind": "picture", "name": name, "image": name });

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::frame::Seen;
+use super::frame::MeshAt;
 use super::pose::{Bend, Pose};
 use super::synth::Synth;
 use crate::base::pixels::Linear;
@@ -52,7 +52,7 @@ pub fn around(synth: &Synth, t: f64, side_px: usize) -> Vec<Taken> {
         let world = |at| placed.point(at, DVec3::ZERO).0;
         let eye = Eye::new([world(position), world(target), placed.turn * up], FOV, size_px);
         let moment = Moment { eye: Some(eye), ..unseen };
-        let picture = Linear::from_cells(side_px, side_px, Seen::new(&own, &moment).bare());
+        let picture = Linear::from_cells(side_px, side_px, MeshAt::new(&own, &moment).bare());
         let up = Some(up).filter(|up| *up != DVec3::Y);
         Some(Taken { name, from: SeenFrom::Standing { position, target, up, fov: Some(FOV) }, picture })
     });

@@ -116,7 +116,7 @@ impl<'a> PosedMesh<'a> {
 }
 
 /// A mesh layer at one time.
-pub struct Seen<'a> {
+pub struct MeshAt<'a> {
     synth: &'a Synth,
     moment: &'a Moment,
     placed: Placed,
@@ -128,13 +128,21 @@ pub struct Seen<'a> {
     alone: OnceLock<Vec<Rgba>>,
 }
 
-impl<'a> Seen<'a> {
+impl<'a> MeshAt<'a> {
     /// The layer at one time.
     pub fn new(synth: &'a Synth, moment: &'a Moment) -> Self {
         let placed = synth.pose.at(synth.time(moment));
         let view = PosedMesh::new(&synth.mesh, synth.sides, &placed, synth.place(moment), moment);
         let light = (synth.light.toward(), synth.light.ambient);
-        Seen { synth, moment, placed, view, light, surface: synth.surface.at(moment, &placed), alone: OnceLock::new() }
+        MeshAt {
+            synth,
+            moment,
+            placed,
+            view,
+            light,
+            surface: synth.surface.at(moment, &placed),
+            alone: OnceLock::new(),
+        }
     }
 
     /// How much light falls on a spot.
@@ -226,7 +234,7 @@ impl<'a> Seen<'a> {
     }
 }
 
-impl Still for Seen<'_> {
+impl Still for MeshAt<'_> {
     fn row(&self, y: usize, columns: Columns, out: &mut [Rgba]) {
         if self.synth.strokes.is_none() {
             return self.surface(y, columns, &mut vec![f64::INFINITY; out.len()], out);

@@ -54,7 +54,7 @@ pub fn marks(synth: &Synth, view: &View, moment: &Moment) -> Vec<Mark> {
     let placed = synth.pose.at(synth.time(moment));
     let mut marks = synth.surface.marks(view, moment, &placed);
     if let Some(strokes) = synth.strokes.as_deref().filter(|strokes| strokes.explains(view)) {
-        let seen = frame::Seen::new(synth, moment);
+        let seen = frame::MeshAt::new(synth, moment);
         let given = seen.given_alone();
         marks.extend(given.into_iter().flat_map(|given| strokes.marks(&given, view)));
     }
@@ -62,7 +62,7 @@ pub fn marks(synth: &Synth, view: &View, moment: &Moment) -> Vec<Mark> {
     let Some(eye) = moment.eye.filter(|_| shown.contains(&true)) else { return marks };
     let vertices = synth.mesh.vertices.par_iter();
     let world = vertices.map(|vertex| placed.point(vertex.position, vertex.normal)).collect();
-    let seen = Seen { synth, moment, eye, world };
+    let seen = MeshMarks { synth, moment, eye, world };
     let [wires, normals, backs] = shown;
     // Who looks at back sides looks into the mesh.
     let nearest = view.nearest.as_deref().filter(|_| !backs);
@@ -73,7 +73,7 @@ pub fn marks(synth: &Synth, view: &View, moment: &Moment) -> Vec<Mark> {
 }
 
 /// A mesh at one time, as one eye sees it.
-struct Seen<'a> {
+struct MeshMarks<'a> {
     synth: &'a Synth,
     moment: &'a Moment,
     eye: Eye,
@@ -81,7 +81,7 @@ struct Seen<'a> {
     world: Vec<(DVec3, DVec3)>,
 }
 
-impl Seen<'_> {
+impl MeshMarks<'_> {
     fn both(&self) -> bool {
         self.synth.sides == Sides::Both
     }
@@ -194,12 +194,12 @@ mod tests {
     use crate::layers::timeline::Wrap;
 
     /// A square of two triangles, whose front looks to +z, or from behind.
-    fn seen<T>(layer: &str, z: f64, of: impl FnOnce(&Seen) -> T) -> T {
+    fn seen<T>(layer: &str, z: f64, of: impl FnOnce(&MeshMarks) -> T) -> T {
         of_squares(&[(-1.0, 1.0, 0.0)], layer, z, of)
     }
 
     /// Such squares: where they begin and end in x, and where they are in z.
-    fn of_squares<T>(squares: &[(f64, f64, f64)], layer: &str, z: f64, of: impl FnOnce(&Seen) -> T) -> T {
+    fn of_squares<T>(squares: &[(f64, f64, f64)], layer: &str, z: f64, of: impl FnOnce(&MeshMarks) -> T) -> T {
         let corners = |&(from, to, z): &(f64, f64, f64)| {
             [[from, -1.0, z], [to, -1.0, z], [to, 1.0, z], [from, 1.0, z]].map(DVec3::from_array)
         };
@@ -215,7 +215,7 @@ mod tests {
         let moment =
             Moment { t: 0.0, size_px: (60, 60), eye: Some(camera.at(0.0, (60, 60))), left_out: 0, magnified: 1 };
         let world = synth.mesh.vertices.iter().map(|vertex| (vertex.position, vertex.normal)).collect();
-        of(&Seen { synth: &synth, moment: &moment, eye: moment.eye.unwrap(), world })
+        of(&MeshMarks { synth: &synth, moment: &moment, eye: moment.eye.unwrap(), world })
     }
 
     const FRONT: &str = r#"{"name": "m", "mesh": "m"}"#;

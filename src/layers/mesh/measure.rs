@@ -1,7 +1,7 @@
 //! How what is drawn on a mesh layer moves with it, in numbers.
 
 use super::drawing::{Given, Looking};
-use super::frame::Seen;
+use super::frame::MeshAt;
 use super::model::MeshLayer;
 use super::synth::Synth;
 use crate::base::problem::Problem;
@@ -28,7 +28,7 @@ pub fn measure(
     let middle = fit::middle(&|ways| synth.reach(moment.t, ways));
     let mut see = |eye: Eye, make: &mut dyn FnMut(&Given)| {
         let moment = Moment { eye: Some(eye), ..*moment };
-        Seen::new(&synth, &moment).given_alone().iter().for_each(make);
+        MeshAt::new(&synth, &moment).given_alone().iter().for_each(make);
     };
     let looking = Looking { eye, middle, steps, see: &mut see, step };
     strokes.measure(looking).map_err(|problem| problem.under("/strokes"))

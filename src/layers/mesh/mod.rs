@@ -36,9 +36,10 @@ use super::parts::repeat::{self, Repeat};
 use super::parts::shots::{Laid, Laying, Lying};
 use super::parts::sketch::Sketch;
 use super::ready::{Making, Ready};
-use super::starts::{Shown, Template};
+use super::starts::{NewLayer, Template};
 use super::technique::{Bundle, Checked, Kind, Technique};
 use super::timeline::{Timeline, Wrap};
+use crate::base::pointer::Pointer;
 use crate::base::problem::Problem;
 
 /// The technique.
@@ -63,7 +64,7 @@ pub static KIND: Kind = Kind {
 };
 
 /// A layer that shows a mesh, with an image or a color on its surface.
-fn template(shown: &Shown) -> Value {
+fn template(shown: &NewLayer) -> Value {
     let mut layer = json!({ "kind": "mesh", "name": shown.name, "mesh": shown.name });
     if shown.both_sides {
         layer["sides"] = "both".into();
@@ -137,11 +138,11 @@ impl Technique for MeshLayer {
     }
 
     fn automatic(&self, path: &str) -> Option<Value> {
-        self.drawing()?.automatic(path.strip_prefix("/strokes")?)
+        self.drawing()?.automatic(Pointer(path).below("/strokes")?)
     }
 
     fn laid(&self, path: &str) -> Option<Vec<String>> {
-        self.drawing()?.laid(path.strip_prefix("/strokes")?)
+        self.drawing()?.laid(Pointer(path).below("/strokes")?)
     }
 
     fn pass_names(&self, pass: &Pass) -> Vec<&str> {
@@ -161,11 +162,11 @@ impl Technique for MeshLayer {
     }
 
     fn sketch(&self, path: &str) -> Option<Sketch> {
-        self.drawing()?.sketch(path.strip_prefix("/strokes")?)
+        self.drawing()?.sketch(Pointer(path).below("/strokes")?)
     }
 
     fn item_name(&self, path: &str) -> Option<&str> {
-        self.surface.slot().item_name(path.strip_prefix("/surface")?)
+        self.surface.slot().item_name(Pointer(path).below("/surface")?)
     }
 
     fn lying(&self) -> Option<Vec<Lying<'_>>> {

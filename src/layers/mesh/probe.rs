@@ -1,6 +1,6 @@
 //! One pixel of a mesh layer explained.
 
-use super::frame::{PosedMesh, Seen, Spot};
+use super::frame::{MeshAt, PosedMesh, Spot};
 use super::model::MeshLayer;
 use super::synth::Synth;
 use crate::base::problem::Problem;
@@ -37,7 +37,7 @@ pub fn probe(
 /// What its strokes are in a pixel, as if nothing hid the layer; nothing without strokes.
 fn of_strokes(synth: &Synth, (x, y): (usize, usize), moment: &Moment) -> Vec<Entry> {
     let Some(strokes) = synth.strokes.as_deref() else { return Vec::new() };
-    let seen = Seen::new(synth, moment);
+    let seen = MeshAt::new(synth, moment);
     let i = y * moment.size_px.0 + x;
     seen.given_alone().map_or_else(Vec::new, |given| strokes.told(&given, i))
 }

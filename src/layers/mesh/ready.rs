@@ -7,7 +7,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use serde_json::Value;
 
-use super::frame::Seen;
+use super::frame::MeshAt;
 use super::synth::Synth;
 use super::{around, marks, plan, probe, unseen};
 use crate::base::geometry;
@@ -24,7 +24,7 @@ use crate::layers::space::eye::Ray;
 
 impl Ready for Synth {
     fn at<'a>(&'a self, moment: &'a Moment) -> Box<dyn Still + 'a> {
-        Box::new(Seen::new(self, moment))
+        Box::new(MeshAt::new(self, moment))
     }
 
     fn stoppable(&self, stop: &Arc<AtomicBool>) -> Option<Arc<dyn Ready>> {

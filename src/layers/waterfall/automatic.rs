@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use serde_json::{Value, json};
 
 use super::drag::Fall;
-use super::look::Shown;
+use super::look::FullLook;
 use super::model::{Surge, WaterfallLayer, WindMode};
 use super::path::Laws;
 use crate::base::maths::{cos, sin};
@@ -74,7 +74,7 @@ pub struct Kind {
     /// The longest life, in seconds.
     pub life: f64,
     /// How they look.
-    pub look: Shown,
+    pub look: FullLook,
 }
 
 impl Node {
@@ -110,12 +110,12 @@ impl Values {
         let water = Kind {
             rate: layer.rate.unwrap_or(20.0 / free),
             life: layer.life.unwrap_or(8.0 * free),
-            look: layer.look.or(Shown::water(h, free)),
+            look: layer.look.or(FullLook::water(h, free)),
         };
         let foam = Kind {
             rate: layer.foam.rate.unwrap_or(8.0 / free),
             life: layer.foam.life.unwrap_or(3.0 * free),
-            look: layer.foam.look.or(Shown::foam(h)),
+            look: layer.foam.look.or(FullLook::foam(h)),
         };
         Values {
             height: h,
@@ -164,7 +164,7 @@ impl Values {
     }
 }
 
-fn look(look: &Shown, field: &str) -> Option<Value> {
+fn look(look: &FullLook, field: &str) -> Option<Value> {
     Some(match field {
         "width" => json!(look.width),
         "jitter" => json!(look.jitter),

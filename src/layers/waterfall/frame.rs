@@ -12,7 +12,7 @@ use crate::layers::parts::pass::Pass;
 use crate::layers::ready::Still;
 
 /// A layer at one time.
-pub struct Seen<'a> {
+pub struct WaterfallAt<'a> {
     synth: &'a Synth,
     moment: &'a Moment,
     splats: Vec<Splat>,
@@ -20,14 +20,14 @@ pub struct Seen<'a> {
     pieces: OnceLock<Vec<Piece>>,
 }
 
-impl<'a> Seen<'a> {
+impl<'a> WaterfallAt<'a> {
     /// The layer at one time.
     pub fn new(synth: &'a Synth, moment: &'a Moment) -> Self {
-        Seen { synth, moment, splats: splats(synth, moment), pieces: OnceLock::new() }
+        WaterfallAt { synth, moment, splats: splats(synth, moment), pieces: OnceLock::new() }
     }
 }
 
-impl Still for Seen<'_> {
+impl Still for WaterfallAt<'_> {
     fn row(&self, y: usize, columns: Columns, out: &mut [Rgba]) {
         self.sprites(&[y], columns, &vec![f64::INFINITY; out.len()], out);
     }

@@ -69,7 +69,7 @@ pub struct Tint {
 
 /// How sprites of one kind look, with everything set.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Shown {
+pub struct FullLook {
     /// Width at birth and at death, in meters.
     pub width: [f64; 2],
     /// By which share widths differ.
@@ -98,14 +98,14 @@ pub struct Shown {
 
 impl Look {
     /// The look with everything set: what is not set is as in `otherwise`.
-    pub fn or(&self, otherwise: Shown) -> Shown {
+    pub fn or(&self, otherwise: FullLook) -> FullLook {
         // An invalid color counts as transparent.
         let light = |tint: &Tint| {
             let [r, g, b, a] = color::parse(&tint.color).unwrap_or([0; 4]);
             let [r, g, b, _] = decode([r, g, b, 255]).map(f64::from);
             (tint.at, [r, g, b, f64::from(a) / 255.0])
         };
-        Shown {
+        FullLook {
             width: self.width.unwrap_or(otherwise.width),
             jitter: self.jitter.unwrap_or(otherwise.jitter),
             streak: self.streak.unwrap_or(otherwise.streak),
@@ -122,10 +122,10 @@ impl Look {
     }
 }
 
-impl Shown {
+impl FullLook {
     /// What water looks like in a fall of this height in meters; `free` is how long a free fall from there takes.
-    pub fn water(height: f64, free: f64) -> Shown {
-        Shown {
+    pub fn water(height: f64, free: f64) -> FullLook {
+        FullLook {
             width: [0.04 * height, 0.11 * height],
             jitter: 0.3,
             streak: 0.12 * free,
@@ -142,8 +142,8 @@ impl Shown {
     }
 
     /// What its foam looks like.
-    pub fn foam(height: f64) -> Shown {
-        Shown {
+    pub fn foam(height: f64) -> FullLook {
+        FullLook {
             width: [0.06 * height, 0.2 * height],
             jitter: 0.5,
             streak: 0.0,
@@ -152,7 +152,7 @@ impl Shown {
             spin: 40.0,
             opacity: 0.3,
             fade: [0.1, 0.9],
-            ..Shown::water(height, 0.0)
+            ..FullLook::water(height, 0.0)
         }
     }
 
@@ -183,7 +183,7 @@ mod tests {
     fn tints_change_evenly_in_linear_light_and_stay_beyond_the_ends() {
         let at = |at: f64, color: &str| Tint { at, color: color.into() };
         let look = Look { tint: vec![at(0.2, "#ffffff00"), at(0.6, "#000000ff")], ..Look::default() };
-        let look = look.or(Shown::foam(1.0));
+        let look = look.or(FullLook::foam(1.0));
         for (s, tint) in [
             (0.0, [1.0, 1.0, 1.0, 0.0]),
             (0.2, [1.0, 1.0, 1.0, 0.0]),
@@ -194,6 +194,6 @@ mod tests {
             let found = look.tint(s);
             assert!(found.iter().zip(tint).all(|(a, b)| (a - b).abs() < 1e-12), "{s}: {found:?}");
         }
-        assert_eq!(Shown::foam(1.0).tint(0.5), [1.0; 4]);
+        assert_eq!(FullLook::foam(1.0).tint(0.5), [1.0; 4]);
     }
 }

@@ -53,7 +53,7 @@ use super::parts::picking::Picks;
 use super::parts::readout::{Entry, ReadOut};
 use super::ready::{Making, Ready};
 use super::space::eye::Ray;
-use super::starts::{Shown, Starts, Template, halfway};
+use super::starts::{NewLayer, Starts, Template, halfway};
 use super::technique::{Checked, Kind, Technique};
 use crate::base::problem::Problem;
 
@@ -199,7 +199,7 @@ impl Technique for WaterfallLayer {
 const GROUND: &str = "#15191c";
 
 /// A fall of water from a clip; what is cut out of it fits into it, as far as that can be.
-fn template(shown: &Shown) -> Value {
+fn template(shown: &NewLayer) -> Value {
     let mut layer = json!({ "kind": "waterfall", "name": shown.name, "clip": shown.name });
     let mut fitting = shown.frames.map(|frames| sprites::fitting(shown.size_px, frames)).unwrap_or_default();
     // Where nothing moves, no window chooses itself.

@@ -123,7 +123,7 @@ pub fn lines(synth: &Synth, pieces: &[Piece], places: &[Vec<f64>; 2], depth: &mu
 mod tests {
     use std::sync::Arc;
 
-    use super::super::frame::Seen;
+    use super::super::frame::WaterfallAt;
     use super::super::model::WaterfallLayer;
     use super::super::sprites::Source;
     use super::*;
@@ -152,7 +152,7 @@ mod tests {
         let moment = Moment { t: 0.3, size_px, eye, left_out: 0, magnified: 1 };
         for pass in [LINES, SPRITES] {
             let rows = |synth: &Synth| {
-                let seen = Seen::new(synth, &moment);
+                let seen = WaterfallAt::new(synth, &moment);
                 let row = |y: usize| {
                     let (mut depth, mut out) = (vec![f64::INFINITY; 64], vec![[0.0; 4]; 64]);
                     seen.pass(&pass, y, Columns::All, &mut depth, &mut out);

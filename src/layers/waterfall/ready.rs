@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::check::carried;
-use super::frame::Seen;
+use super::frame::WaterfallAt;
 use super::synth::Synth;
 use super::{album, lines, marks, picking, plan};
 use crate::base::reduce::Reduced;
@@ -19,7 +19,7 @@ use crate::layers::ready::{Ready, Still};
 
 impl Ready for Synth {
     fn at<'a>(&'a self, moment: &'a Moment) -> Box<dyn Still + 'a> {
-        Box::new(Seen::new(self, moment))
+        Box::new(WaterfallAt::new(self, moment))
     }
 
     fn plan(&self, moment: &Moment) -> Plan {

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::between::{Mix, catmull, hermite, residue};
 use super::births::Alive;
 use super::lines::Line;
-use super::look::Shown;
+use super::look::FullLook;
 use super::model::{Between, Order, Tangents};
 use super::sprites::KeyPlace;
 use super::sprites::pyramid::Pyramid;
@@ -140,7 +140,7 @@ fn is_outside(middle: DVec2, size_px: DVec2, (width, height): (usize, usize)) ->
 }
 
 /// The angle of a sprite in degrees, if it is turned by `own` itself and its line runs this way.
-fn turned(look: &Shown, own: f64, way: DVec2) -> f64 {
+fn turned(look: &FullLook, own: f64, way: DVec2) -> f64 {
     let aligned = look.align && way.length() > STANDING;
     let angle = own + if aligned { atan2(-way.x, way.y).to_degrees() } else { 0.0 };
     let angle = angle - 360.0 * (angle / 360.0).round();

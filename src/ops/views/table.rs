@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use crate::base::error::{Error, Result};
 use crate::base::problem::Problem;
+use crate::base::statistics;
 use crate::base::text::short;
 use crate::layers::parts::materials::Materials;
 use crate::ops::Context;
@@ -116,8 +117,7 @@ fn words(row: &Value, width: usize) -> String {
 /// What is told of views that come back much worse than the others.
 fn off(rows: &[Value]) -> impl Iterator<Item = String> {
     let mut all: Vec<f64> = rows.iter().filter_map(|row| row["psnr"].as_f64()).collect();
-    all.sort_by(f64::total_cmp);
-    let median = all.get(all.len() / 2).copied().unwrap_or_default();
+    let median = statistics::median(&mut all).unwrap_or_default();
     rows.iter().filter_map(move |row| {
         let psnr = row["psnr"].as_f64().filter(|psnr| *psnr < median - OFF_DB)?;
         let view = row["view"].as_str().unwrap_or_default();

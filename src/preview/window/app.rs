@@ -10,9 +10,9 @@ use winit::keyboard::ModifiersState;
 
 use super::clock::Clock;
 use super::hurry::Hurry;
-use super::manner::Manner;
 use super::mouse::Mouse;
 use super::opened::{OpenWindow, first_size};
+use super::options::WindowOptions;
 use super::own_view::OwnView;
 use super::run::Outcome;
 use super::show::{Cached, Show};
@@ -25,7 +25,7 @@ use crate::preview::wire::message::ToEditor;
 
 /// The window and all that it shows.
 pub struct App {
-    pub(super) manner: Manner,
+    pub(super) options: WindowOptions,
     pub(super) replies: Sender<ToEditor>,
     /// For threads beside the event loop.
     pub(super) proxy: EventLoopProxy<Event>,
@@ -61,12 +61,12 @@ impl App {
     /// A window that opens with the first scene or the first problem.
     pub fn new(
         instance: wgpu::Instance,
-        manner: Manner,
+        options: WindowOptions,
         replies: Sender<ToEditor>,
         proxy: EventLoopProxy<Event>,
     ) -> App {
         App {
-            manner,
+            options,
             replies,
             proxy,
             instance: Some(instance),
@@ -100,7 +100,7 @@ impl App {
     /// Opens the window if it is not open yet.
     pub(super) fn open(&mut self, event_loop: &ActiveEventLoop) -> Result<()> {
         let Some(instance) = self.instance.take() else { return Ok(()) };
-        self.opened = Some(OpenWindow::open(event_loop, instance, &self.manner, self.first_size(event_loop))?);
+        self.opened = Some(OpenWindow::open(event_loop, instance, &self.options, self.first_size(event_loop))?);
         self.report();
         self.resized();
         Ok(())

@@ -41,7 +41,7 @@ impl App {
     pub(super) fn send_next(&mut self) {
         let Some(opened) = self.opened.as_mut().filter(|_| self.sending.is_none()) else { return };
         let Some(ready) = self.waiting.take() else { return };
-        let most = opened.gpu.device().max_side().min(self.manner.most);
+        let most = opened.gpu.device().max_side().min(self.options.most);
         let proxy = self.proxy.clone();
         let send = move |event| proxy.send_event(event).is_ok();
         self.sending = Some(Sending::start(opened.gpu.uploader(), ready, most, send));
@@ -87,6 +87,7 @@ impl App {
         self.grows_to = self.shown.is_none().then(|| self.first_size(event_loop));
         self.shown = Some(show);
         self.state.words.reduced = reduced;
+        self.state.left_out = ready.left_out;
         self.state.words.follow_scene(ready.problems);
         self.marks.revision += 1;
         self.owed = Some(ToEditor::Ack { revision: ready.revision, synth_ms: ready.synth_ms });
@@ -134,8 +135,8 @@ impl App {
 
     /// As long as there is no picture, also writes what is wrong to standard error: the window may never open.
     fn complain(&self, problems: &[Problem]) {
-        if self.shown.is_none() && self.manner.complains {
-            let lines: String = problems.iter().map(|p| format!("plica: {}: {p}\n", self.manner.name)).collect();
+        if self.shown.is_none() && self.options.complains {
+            let lines: String = problems.iter().map(|p| format!("plica: {}: {p}\n", self.options.name)).collect();
             // Standard error may be closed.
             drop(std::io::stderr().write_all(lines.as_bytes()));
         }

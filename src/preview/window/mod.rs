@@ -30,10 +30,10 @@ mod input;
 mod labels;
 mod legend;
 mod libraries;
-mod manner;
 mod marks;
 mod mouse;
 mod opened;
+mod options;
 mod overlays;
 mod own_view;
 mod panel;
@@ -55,15 +55,15 @@ mod worker;
 #[cfg_attr(any(not(unix), target_os = "macos"), path = "x11_none.rs")]
 mod x11;
 
-pub use manner::Manner;
+pub use options::WindowOptions;
 pub use worker::Load;
 
-use manner::PLACE;
+use options::PLACE;
 
 /// What a window is opened with.
 pub struct Setup {
     /// How it opens and behaves.
-    pub manner: Manner,
+    pub options: WindowOptions,
     /// What it shows.
     pub updates: Receiver<Update>,
     /// What it has to say.
@@ -84,7 +84,7 @@ pub fn run(setup: Setup) -> Result<()> {
     let (proxy, sender) = (event_loop.create_proxy(), event_loop.create_proxy());
     worker::start(setup.updates, setup.load, setup.cancel, move |event| sender.send_event(event).is_ok());
     let instance = crate::render::gpu::device::instance(Some(Box::new(event_loop.owned_display_handle())));
-    let mut app = app::App::new(instance, setup.manner, setup.replies, proxy);
+    let mut app = app::App::new(instance, setup.options, setup.replies, proxy);
     quietly(|| event_loop.run_app(&mut app)).map_err(|e| Error::at(PLACE, e))?.map_err(|error| match error {
         EventLoopError::ExitFailure(_) => Error::at(PLACE, "the display is gone"),
         other => Error::at(PLACE, other),

@@ -140,7 +140,9 @@ impl Mouse {
                 state.band = state.band.map(|(from, _)| (from, to));
             }
             (Drag::Grip, _, Some(to)) => self.dragged.iter_mut().for_each(|grasp| grasp.follow(state, self.held, to)),
-            _ => {}
+            // Nothing is held, or the pointer comes or goes.
+            (Drag::Nothing | Drag::Picture | Drag::Round | Drag::Along, ..) => {}
+            (Drag::Time | Drag::Border | Drag::Band | Drag::Grip, ..) => {}
         }
     }
 
@@ -235,7 +237,7 @@ impl Mouse {
             (Drag::Nothing, Some(at)) if at.y >= state.area().height && bar::is_sign(state, at) => Shape::Hand,
             (Drag::Nothing, Some(at)) if on_border(state, at) => Shape::Across,
             (Drag::Nothing, Some(at)) if grip_at(state, at).is_some() => Shape::Hand,
-            _ => Shape::Arrow,
+            (Drag::Nothing | Drag::Time, _) => Shape::Arrow,
         }
     }
 }

@@ -12,8 +12,8 @@ use winit::window::{CursorIcon, Fullscreen, Window};
 
 use super::chrome;
 use super::grasp::Held;
-use super::manner::{Manner, PLACE};
 use super::mouse::Shape;
+use super::options::{PLACE, WindowOptions};
 use super::own_view::OwnView;
 use super::pass::{self, For};
 use super::screen::{Pictures, Presented, Screen, Strokes};
@@ -59,8 +59,8 @@ pub struct OpenWindow {
     looked_from: Option<(OwnView, f64, u64)>,
     /// Whether the CPU makes the picture.
     by_cpu: bool,
-    /// See [`Manner::shots`].
-    shots: PathBuf,
+    /// See [`WindowOptions::screenshots`].
+    screenshots: PathBuf,
 }
 
 impl OpenWindow {
@@ -68,37 +68,63 @@ impl OpenWindow {
     pub fn open(
         event_loop: &ActiveEventLoop,
         instance: wgpu::Instance,
-        manner: &Manner,
+        options: &WindowOptions,
         size: PhysicalSize<u32>,
     ) -> Result<OpenWindow> {
         let attributes = Window::default_attributes()
-            .with_title(format!("{} - plica", manner.name))
+            .with_title(format!("{} - plica", options.name))
             .with_inner_size(size)
             .with_min_inner_size(LogicalSize::<f64>::from(LEAST))
-            .with_active(manner.takes_keyboard)
-            .with_visible(manner.takes_keyboard);
+            .with_active(options.takes_keyboard)
+            .with_visible(options.takes_keyboard);
         let window = Arc::new(event_loop.create_window(attributes).map_err(|e| Error::at(PLACE, e))?);
         let desk = Desk::of(&window);
-        if !manner.takes_keyboard {
+        if !options.takes_keyboard {
             desk.iter().for_each(Desk::leave_the_keyboard);
             window.set_visible(true);
         }
         let (gpu, screen) = Screen::open(instance, window.clone())?;
         let (shape, passes, looked_from, by_cpu) = Default::default();
         let (hidden, covered, looked) = Default::default();
-        let shots = manner.shots.clone();
-        Ok(OpenWindow { window, gpu, screen, hidden, covered, desk, looked, shape, passes, looked_from, by_cpu, shots })
+        let screenshots = options.screenshots.clone();
+        Ok(OpenWindow {
+            window,
+            gpu,
+            screen,
+            hidden,
+            covered,
+            desk,
+            looked,
+            shape,
+            passes,
+            looked_from,
+            by_cpu,
+            screenshots,
+        })
     }
 
     /// The same window on a new device.
     pub fn anew(self) -> Result<OpenWindow> {
-        let OpenWindow { window, gpu, screen, desk, covered, shape, shots, .. } = self;
+        let OpenWindow { window, gpu, screen, desk, covered, shape, screenshots, .. } = self;
         let instance = gpu.instance().clone();
         drop((gpu, screen)); // a window has one surface at a time
         let (gpu, screen) = Screen::open(instance, window.clone())?;
         let (passes, looked_from, by_cpu) = Default::default();
         let (hidden, looked) = Default::default();
-        Ok(OpenWindow { window, gpu, screen, hidden, covered, desk, looked, shape, passes, looked_from, by_cpu, shots })
+        Ok(OpenWindow {
+            window,
+            gpu,
+            screen,
+            hidden,
+            covered,
+            desk,
+            looked,
+            shape,
+            passes,
+            looked_from,
+            by_cpu,
+            screenshots,
+        })
     }
 
     /// Whether the window can be seen: checked now and then while it can, and at every drawing while it cannot.
@@ -177,8 +203,11 @@ impl OpenWindow {
             [&marks.fixed, &marks.moving, &marks.dragged, &marks.labels, &chrome].map(|canvas| &canvas.strokes[..]);
         let strokes = Strokes { layers, letters };
         let drawn = self.screen.draw(&self.gpu, state, &pictures, &strokes);
-        if std::mem::take(&mut state.shot) {
-            let saved = self.screen.shot(&self.gpu, state, &pictures, &strokes).and_then(|shot| self.save(&shot));
+        if std::mem::take(&mut state.screenshot) {
+            let saved = self
+                .screen
+                .screenshot(&self.gpu, state, &pictures, &strokes)
+                .and_then(|screenshot| self.save(&screenshot));
             state.words.told = Some(saved.unwrap_or_else(|error| error.to_string()));
             self.window.request_redraw();
         }
@@ -186,15 +215,15 @@ impl OpenWindow {
         drawn
     }
 
-    /// Saves a shot under the first name that is free; returns what is to be said of it.
-    fn save(&self, shot: &Frame) -> Result<String> {
-        let png = still::frame(shot).map_err(|error| Error::at(PLACE, error))?;
+    /// Saves a screenshot under the first name that is free; returns what is to be said of it.
+    fn save(&self, screenshot: &Frame) -> Result<String> {
+        let png = still::frame(screenshot).map_err(|error| Error::at(PLACE, error))?;
         let name = |n: u32| {
-            let name = self.shots.file_name().unwrap_or_default().to_string_lossy();
-            self.shots.with_file_name(format!("{name}-shot-{n}.png"))
+            let name = self.screenshots.file_name().unwrap_or_default().to_string_lossy();
+            self.screenshots.with_file_name(format!("{name}-shot-{n}.png"))
         };
         let free = (1..).map(name).find(|path| path.symlink_metadata().is_err());
-        let path = free.ok_or_else(|| Error::at(PLACE, "there are too many shots").cure("move them away"))?;
+        let path = free.ok_or_else(|| Error::at(PLACE, "there are too many screenshots").cure("move them away"))?;
         write::write_new(&path, &png)?;
         Ok(format!("saved as {}", path.display()))
     }

@@ -68,7 +68,7 @@ impl State {
             "wipe-left" => self.move_wipe(-WIPE_STEP),
             "wipe-right" => self.move_wipe(WIPE_STEP),
             "play-part" => self.words.told = Some(self.transport.mark_part()),
-            "shot" => self.shot = true,
+            "shot" => self.screenshot = true,
             "mark-point" => self.marked = self.pointed(),
             "zoom-in" => self.zoom(1, about),
             "zoom-out" => self.zoom(-1, about),

@@ -121,13 +121,19 @@ impl Screen {
     }
 
     /// What the window shows, as a picture of its size.
-    pub fn shot(&mut self, gpu: &Gpu, state: &State, pictures: &Pictures, strokes: &Strokes<'_>) -> Result<Frame> {
+    pub fn screenshot(
+        &mut self,
+        gpu: &Gpu,
+        state: &State,
+        pictures: &Pictures,
+        strokes: &Strokes<'_>,
+    ) -> Result<Frame> {
         let (width, height) = self.configured;
         let size = wgpu::Extent3d { width: width.max(1), height: height.max(1), depth_or_array_layers: 1 };
         let device = gpu.device();
         let into = device.checked(|| {
             device.raw.create_texture(&wgpu::TextureDescriptor {
-                label: Some("shot"),
+                label: Some("screenshot"),
                 size,
                 mip_level_count: 1,
                 sample_count: 1,
@@ -138,11 +144,11 @@ impl Screen {
             })
         })?;
         self.paint(gpu, &into, state, pictures, strokes)?;
-        let shot = read_back(device, &into)?;
+        let screenshot = read_back(device, &into)?;
         let is_bgra = matches!(self.format, wgpu::TextureFormat::Bgra8Unorm | wgpu::TextureFormat::Bgra8UnormSrgb);
         // A window is not transparent.
         let code = |[a, b, c, _]: &[u8; 4]| if is_bgra { [*c, *b, *a, 255] } else { [*a, *b, *c, 255] };
-        Ok(Frame::from_cells(shot.width(), shot.height(), shot.cells().iter().map(code).collect()))
+        Ok(Frame::from_cells(screenshot.width(), screenshot.height(), screenshot.cells().iter().map(code).collect()))
     }
 
     fn configure(&mut self, gpu: &Gpu, width: u32, height: u32) -> Result<()> {
@@ -275,9 +281,9 @@ struct Maker<'a> {
 }
 
 impl Maker<'_> {
-    /// `manner` is the constant of the shader that is set, where one is.
-    fn frame(&self, manner: &'static str) -> wgpu::RenderPipeline {
-        let constants = ["reduces", "differs"].map(|name| (name, f64::from(u8::from(name == manner))));
+    /// `constant` is that of the shader that is set, where one is.
+    fn frame(&self, constant: &'static str) -> wgpu::RenderPipeline {
+        let constants = ["reduces", "differs"].map(|name| (name, f64::from(u8::from(name == constant))));
         self.make(["whole_frame", "show_frame"], &constants, &[], None)
     }
 

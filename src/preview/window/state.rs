@@ -74,7 +74,7 @@ pub struct State {
     /// Where the cursor of the editor's picture is, in pixels of the picture.
     pub cursor: Option<Point>,
     /// What the window shows is to be saved.
-    pub shot: bool,
+    pub screenshot: bool,
     /// Two corners of the box that the mouse draws, in pixels of the picture.
     pub band: Option<(Point, Point)>,
     /// What can be dragged.
@@ -87,6 +87,8 @@ pub struct State {
     pub under: Option<String>,
     /// What is selected in the editor, for people.
     pub selected: Option<String>,
+    /// That not all of the scene is shown.
+    pub left_out: Option<String>,
     /// Frames a second, while it plays.
     pub fps: Option<f64>,
     /// Sprites that are left out, while it plays.
@@ -137,13 +139,14 @@ impl Default for State {
             wipe: 0.5,
             marked: None,
             cursor: None,
-            shot: false,
+            screenshot: false,
             band: None,
             grips: Vec::new(),
             dragged: None,
             jump: None,
             under: None,
             selected: None,
+            left_out: None,
             fps: None,
             thin: Thin::default(),
             arrow_scale: 1.0,

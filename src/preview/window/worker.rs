@@ -75,6 +75,8 @@ pub struct Ready {
     pub synth_ms: f64,
     /// What is wrong with it, although it can be shown.
     pub problems: Vec<Problem>,
+    /// That not all of it is shown.
+    pub left_out: Option<String>,
 }
 
 /// A scene whose textures are on the GPU.
@@ -262,7 +264,9 @@ fn synthesise(
                 problems.extend(synth.lacks());
                 let problems = named(&scene, problems);
                 let around = Ball::around(&|ways| render::reach(&synth.layers, TIMES, ways));
-                send(Event::Ready(Ready { document, scene, synth, around, revision, synth_ms, problems }))?;
+                let left_out =
+                    Some(how.muted.len()).filter(|count| *count > 0).map(|count| format!("without {count} muted"));
+                send(Event::Ready(Ready { document, scene, synth, around, revision, synth_ms, problems, left_out }))?;
             }
             // A missing picture was already found, with its reason, while it was loaded.
             Err(problem) => {

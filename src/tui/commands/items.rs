@@ -99,7 +99,9 @@ pub fn add_here(state: &mut State, times: usize) -> Done {
     let in_list = match (&field.kind, there) {
         (Kind::List(_), _) => true,
         (Kind::Map(_), _) | (Kind::Object | Kind::Tagged { .. }, false) => false,
-        _ => item_of(state.document(), &pointer)
+        (Kind::Object | Kind::Tagged { .. }, true)
+        | (Kind::Number { .. } | Kind::Numbers(_), _)
+        | (Kind::Text | Kind::Bool | Kind::Choice(_) | Kind::Reference(_), _) => item_of(state.document(), &pointer)
             .map(owned)
             .or_else(|| item_of(state.document(), &state.cursor.node).map(owned))
             .is_some(),
@@ -119,18 +121,22 @@ pub fn add_here(state: &mut State, times: usize) -> Done {
         (Kind::Map(_), _) if entry_of_file(&Pointer(&pointer).join("")) => ask_for_path(state, &pointer),
         (Kind::Map(_), _) if pointer == SHAPES => add_shape(state),
         (Kind::Map(_), _) => insert_entry(state, &pointer, &field.name),
-        _ => match item_of(state.document(), &pointer).map(owned) {
-            Some((list, index)) => insert(state, &list, index + 1, times),
-            None if entry_of_file(&pointer) => ask_for_path(state, &pointer),
-            None if List::entry(&pointer).is_some() => add_shape(state),
-            None if state.cursor.focus == Pane::Tree => {
-                Err("o adds to lists: go to a list or to one of its items".into())
-            }
-            None => match item_of(state.document(), &state.cursor.node.clone()).map(owned) {
+        (Kind::Object | Kind::Tagged { .. }, true)
+        | (Kind::Number { .. } | Kind::Numbers(_), _)
+        | (Kind::Text | Kind::Bool | Kind::Choice(_) | Kind::Reference(_), _) => {
+            match item_of(state.document(), &pointer).map(owned) {
                 Some((list, index)) => insert(state, &list, index + 1, times),
-                None => Err("nothing can be added here".into()),
-            },
-        },
+                None if entry_of_file(&pointer) => ask_for_path(state, &pointer),
+                None if List::entry(&pointer).is_some() => add_shape(state),
+                None if state.cursor.focus == Pane::Tree => {
+                    Err("o adds to lists: go to a list or to one of its items".into())
+                }
+                None => match item_of(state.document(), &state.cursor.node.clone()).map(owned) {
+                    Some((list, index)) => insert(state, &list, index + 1, times),
+                    None => Err("nothing can be added here".into()),
+                },
+            }
+        }
     }
 }
 

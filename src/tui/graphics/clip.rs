@@ -10,7 +10,7 @@ use crate::layers::KINDS;
 use crate::layers::parts::marks::{Look, Mark, Shape};
 use crate::layers::parts::materials::{List, Materials};
 use crate::layers::parts::picking::Subject;
-use crate::layers::starts::Shown;
+use crate::layers::starts::NewLayer;
 use crate::render::{self, Synth};
 
 /// What is looked at in place of the scene.
@@ -52,7 +52,7 @@ pub(super) fn alone(picture: Arc<Picture>) -> Option<Synth> {
     const NAME: &str = "frame";
     let templates = KINDS.iter().filter_map(|kind| kind.template);
     let shows = templates.into_iter().find(|template| template.of == List::Images)?;
-    let layer = (shows.layer)(&Shown { name: NAME, bare: true, ..Shown::default() });
+    let layer = (shows.layer)(&NewLayer { name: NAME, bare: true, ..NewLayer::default() });
     let scene = json!({ "plica": 1, "images": { NAME: { "path": NAME } }, "layers": [layer] });
     let materials = Materials { pictures: [(NAME.to_owned(), picture)].into(), ..Materials::default() };
     render::synth(&serde_json::from_value(scene).ok()?, &materials, None).ok()

@@ -12,7 +12,7 @@ use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use super::document::{Buffer, Document, Text};
 use crate::base::budget::{Budget, Share};
 use crate::base::error::{Error, Result};
-use crate::base::text::there_are;
+use crate::base::text::{byte_of_hex, there_are};
 use crate::files::Limits;
 use crate::files::mesh::input::{self, Opener};
 use crate::files::picture::kinds::command;
@@ -241,8 +241,8 @@ fn unescaped(uri: &str) -> Option<String> {
     let mut bytes = Vec::with_capacity(uri.len());
     let mut rest = uri.as_bytes();
     while let Some((&byte, after)) = rest.split_first() {
-        let digits = after.get(..2).filter(|digits| byte == b'%' && digits.iter().all(u8::is_ascii_hexdigit));
-        let escaped = digits.and_then(|digits| u8::from_str_radix(std::str::from_utf8(digits).ok()?, 16).ok());
+        let digits = after.get(..2).filter(|_| byte == b'%');
+        let escaped = digits.and_then(byte_of_hex);
         bytes.push(escaped.unwrap_or(byte));
         rest = if escaped.is_some() { &after[2..] } else { after };
     }

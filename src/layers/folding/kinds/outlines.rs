@@ -51,7 +51,15 @@ pub fn turned(old: &Outline, to: &str) -> Option<Turned> {
                 true => straightened(&flattened(old), there),
             }
         }
-        _ => return None,
+        // A shape as it is already, or of a kind that is no shape.
+        (
+            Outline::Rectangle { .. }
+            | Outline::Ellipse { .. }
+            | Outline::Polygon { .. }
+            | Outline::Path { .. }
+            | Outline::Shapes { .. },
+            _,
+        ) => return None,
     })
 }
 

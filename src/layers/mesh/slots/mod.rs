@@ -17,7 +17,7 @@ use super::added::Added;
 use super::drawing::DrawingSlot;
 use super::surface::SurfaceSlot;
 use crate::layers::parts::shots::{Laid, Laying};
-use crate::layers::starts::Shown;
+use crate::layers::starts::NewLayer;
 
 /// What kinds of surface add to the technique.
 pub const OF_SURFACES: Added = view_map::slot::ADDED;
@@ -57,7 +57,7 @@ impl Surface {
 }
 
 /// The surface of a new layer that shows this; `None` if it need not be written.
-pub fn template(shown: &Shown) -> Option<Value> {
+pub fn template(shown: &NewLayer) -> Option<Value> {
     let image = shown.image.map(|image| json!({ "kind": "texture", "image": image }));
     image.or_else(|| shown.color.map(|color| json!({ "kind": "plain", "color": color })))
 }

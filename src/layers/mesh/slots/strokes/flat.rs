@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::aim::Aim;
 use super::curves::EDGE;
 use super::impulse::{Dice, FADE, MOST, Recipe, factor};
-use super::sum::{Noise, Shown, normalized};
+use super::sum::{InFrame, Noise, normalized};
 use super::surface::{Facet, Surface, mixed};
 use super::synth::is_set;
 use crate::base::maths::{TAU, cos, exp, sin, smoothstep};
@@ -30,7 +30,7 @@ pub struct Flat {
 
 /// The sum of all impulses, `px_per_m` pixels of the frame being a meter of the surface. `reach` is how far a kernel goes
 /// beyond its plane, in radii.
-pub fn sum(surface: &Surface, shown: &Shown, recipe: &Recipe, aim: &Aim, px_per_m: f64, reach: f64) -> Noise {
+pub fn sum(surface: &Surface, shown: &InFrame, recipe: &Recipe, aim: &Aim, px_per_m: f64, reach: f64) -> Noise {
     let (width, height) = shown.size_px;
     let flats = flats(surface, recipe, aim, (px_per_m, reach));
     let mut rows: Vec<Vec<u32>> = vec![Vec::new(); height];

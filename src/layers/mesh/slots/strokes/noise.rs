@@ -5,7 +5,7 @@ use glam::{DMat3, DVec2, DVec3};
 use super::aim::{Aim, Follows, Grows};
 use super::impulse::{Impulse, Recipe, impulses};
 use super::model::{Along, Anchor, By, Direction, Noise as Wanted, Trim as Ends, Vary};
-use super::sum::{Noise, Shown, Trim, covers, sum};
+use super::sum::{InFrame, Noise, Trim, covers, sum};
 use super::surface::Surface;
 use super::synth::{Codes, Ready, SMOOTH, is_set};
 use super::{even, flat, grid, visible};
@@ -20,7 +20,7 @@ pub struct Scene<'a> {
     /// Its triangles in camera coordinates.
     pub surface: Surface<'a>,
     /// What pixels show.
-    pub shown: Shown<'a>,
+    pub shown: InFrame<'a>,
     /// Where the light goes, in camera coordinates.
     pub light: DVec3,
     /// How many times larger all is drawn than the document says.
@@ -41,7 +41,7 @@ impl<'a> Scene<'a> {
         let stop = ready.stop.as_deref();
         let surface = Surface { mesh, pieces, seen, placed: given.placed, both: given.both, eye, size_px, stop };
         let (inverse, triangle) = (&*given.inverse, &*given.triangle);
-        let shown = Shown { size_px, focal_px: eye.focal_px, inverse, triangle, stop };
+        let shown = InFrame { size_px, focal_px: eye.focal_px, inverse, triangle, stop };
         let drawing = (given.t * ready.duration * ready.strokes.redraw + 1e-9).floor() as u32;
         let (light, scale) = (eye.turn * -given.toward, ready.scale * given.magnified);
         Scene { ready, given, surface, shown, light, scale, drawing }

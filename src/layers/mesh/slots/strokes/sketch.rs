@@ -8,7 +8,7 @@ use super::impulse::Recipe;
 use super::marks::{Ink, Set};
 use super::model::{Force, Noise};
 use super::passes;
-use super::sum::{Shown, Trim, sum};
+use super::sum::{InFrame, Trim, sum};
 use super::tone::share;
 use crate::base::pixels::Grid;
 use crate::base::pointer::Pointer;
@@ -55,7 +55,7 @@ fn patch(strokes: &Force, noise: &Noise) -> Patch {
         let recipe = Recipe { key, spacing_px, radius_px: spacing_px * regularity, overlap, spread };
         let count = size.0 * size.1;
         let (inverse, triangle) = (vec![1.0; count], vec![0; count]);
-        let shown = Shown { size_px: size, focal_px: 1.0, inverse: &inverse, triangle: &triangle, stop: None };
+        let shown = InFrame { size_px: size, focal_px: 1.0, inverse: &inverse, triangle: &triangle, stop: None };
         let mut found = sum(&shown, &grid::impulses(size, &recipe, angle), overlap, Trim::Object);
         if is_even {
             even(size, &triangle, spacing_px, &mut found);

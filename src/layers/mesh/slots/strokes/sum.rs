@@ -33,7 +33,7 @@ pub enum Trim {
 }
 
 /// What the frame shows of a layer.
-pub struct Shown<'a> {
+pub struct InFrame<'a> {
     /// Width and height, in pixels.
     pub size_px: (usize, usize),
     /// Distance of the picture plane, in pixels.
@@ -56,7 +56,7 @@ pub struct Noise {
 }
 
 /// The sum of impulses, `overlap` of which are over each pixel.
-pub fn sum(shown: &Shown, impulses: &[Impulse], overlap: f64, trim: Trim) -> Noise {
+pub fn sum(shown: &InFrame, impulses: &[Impulse], overlap: f64, trim: Trim) -> Noise {
     let (width, height) = shown.size_px;
     let across = width.div_ceil(TILE).max(1);
     let bins = Bins::new(shown.size_px, impulses);
@@ -92,7 +92,7 @@ pub fn sum(shown: &Shown, impulses: &[Impulse], overlap: f64, trim: Trim) -> Noi
 
 /// Some columns of some rows.
 struct Tile<'a> {
-    shown: &'a Shown<'a>,
+    shown: &'a InFrame<'a>,
     columns: Range<usize>,
     rows: Range<usize>,
     trim: Trim,
@@ -106,7 +106,7 @@ struct Tile<'a> {
 impl<'a> Tile<'a> {
     /// `None` if the layer is not seen in it.
     #[inline(always)]
-    fn new(shown: &'a Shown<'a>, columns: Range<usize>, rows: Range<usize>, trim: Trim) -> Option<Tile<'a>> {
+    fn new(shown: &'a InFrame<'a>, columns: Range<usize>, rows: Range<usize>, trim: Trim) -> Option<Tile<'a>> {
         let level = Level::new((shown.size_px.0, shown.inverse, shown.triangle), &columns, &rows)?;
         let cells = STRIDE * rows.len();
         let mut inverse = vec![0.0; cells];
@@ -311,7 +311,7 @@ impl Scale {
 }
 
 /// A noise by its sums: of kernels, and of their variances.
-pub fn normalized(shown: &Shown, sums: &[[f32; 2]], overlap: f64) -> Noise {
+pub fn normalized(shown: &InFrame, sums: &[[f32; 2]], overlap: f64) -> Noise {
     let scale = Scale::new(overlap);
     let own = |i: usize| shown.triangle[i] != u32::MAX;
     let of = |(i, [sum, power]): (usize, &[f32; 2])| if own(i) { scale.of(*sum, *power) } else { (0.0, 0.0) };
@@ -328,12 +328,18 @@ fn reached(middle: f64, radius: f64, of: &Range<usize>) -> Range<usize> {
 }
 
 /// How much of a kernel a pixel shows.
-pub fn covers(shown: &Shown, trim: Trim, impulse: &Impulse, (x, y): (usize, usize)) -> f32 {
+pub fn covers(shown: &InFrame, trim: Trim, impulse: &Impulse, (x, y): (usize, usize)) -> f32 {
     trimmed(shown, trim, impulse, y, x..x + 1).next().unwrap_or(0.0)
 }
 
 /// How much of a kernel the pixels of a row show.
-fn trimmed(shown: &Shown, trim: Trim, impulse: &Impulse, y: usize, columns: Range<usize>) -> impl Iterator<Item = f32> {
+fn trimmed(
+    shown: &InFrame,
+    trim: Trim,
+    impulse: &Impulse,
+    y: usize,
+    columns: Range<usize>,
+) -> impl Iterator<Item = f32> {
     let row = y * shown.size_px.0;
     let DVec3 { x: slope, y: down, z: base } = impulse.plane;
     let first = down * (y as f64 + 0.5) + base;
@@ -375,7 +381,7 @@ mod tests {
         let (width, height) = (100, 90);
         let (inverse, triangle) = (vec![0.5; width * height], vec![0; width * height]);
         let shown =
-            Shown { size_px: (width, height), focal_px: 100.0, inverse: &inverse, triangle: &triangle, stop: None };
+            InFrame { size_px: (width, height), focal_px: 100.0, inverse: &inverse, triangle: &triangle, stop: None };
         let own = impulse((61.3, 63.9));
         let found = sum(&shown, &[own], 16.0, Trim::Depth(0.5));
         let curve = |d: f64| (exp(-std::f64::consts::PI * d * d / 400.0) - EDGE) / (1.0 - EDGE);
@@ -402,7 +408,7 @@ mod tests {
         let inverse: Vec<f64> = (0..width * height).map(|i| if i % width < 30 { 0.5 } else { 0.5 + 0.075 }).collect();
         let triangle: Vec<u32> = (0..width * height).map(|i| if i / width < 5 { u32::MAX } else { 0 }).collect();
         let shown =
-            Shown { size_px: (width, height), focal_px: 100.0, inverse: &inverse, triangle: &triangle, stop: None };
+            InFrame { size_px: (width, height), focal_px: 100.0, inverse: &inverse, triangle: &triangle, stop: None };
         let found = sum(&shown, &[own], 16.0, Trim::Depth(0.5));
         let all = sum(&shown, &[own], 16.0, Trim::Object);
         for y in 0..height {

@@ -4,14 +4,14 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use super::impulse::Impulse;
-use super::sum::Shown;
+use super::sum::InFrame;
 use crate::base::maths::{cos, sin, smoothstep};
 
 /// Where to look: rings of this radius, in kernel radii, with so many taps, the first at an angle in degrees.
 const RINGS: [(f64, u32, f64); 3] = [(0.0, 1, 0.0), (1.0 / 3.0, 4, 0.0), (2.0 / 3.0, 8, 22.5)];
 
 /// Multiplies the factor of each impulse by how much of it is seen.
-pub fn weigh(shown: &Shown, reach: f64, impulses: &mut [Impulse]) {
+pub fn weigh(shown: &InFrame, reach: f64, impulses: &mut [Impulse]) {
     let rings = RINGS.iter().flat_map(|&(radius, count, first)| {
         (0..count).map(move |k| {
             let angle = (first + 360.0 / f64::from(count) * f64::from(k)).to_radians();
@@ -22,7 +22,7 @@ pub fn weigh(shown: &Shown, reach: f64, impulses: &mut [Impulse]) {
     impulses.par_iter_mut().for_each(|impulse| impulse.factor *= visible(shown, reach, &taps, impulse));
 }
 
-fn visible(shown: &Shown, reach: f64, taps: &[DVec2], impulse: &Impulse) -> f64 {
+fn visible(shown: &InFrame, reach: f64, taps: &[DVec2], impulse: &Impulse) -> f64 {
     let (width, height) = (shown.size_px.0 as f64, shown.size_px.1 as f64);
     let scale = impulse.depth * shown.focal_px / impulse.radius_px;
     let seen = taps.iter().filter_map(|tap| {

@@ -16,7 +16,7 @@ use crate::base::maths::{TAU, atan2, cos, pow, sin};
 use crate::base::mesh::{Mesh, Vertex};
 use crate::base::statistics::{correlation, percentile};
 use crate::layers::mesh::drawing::Given;
-use crate::layers::mesh::frame::Seen;
+use crate::layers::mesh::frame::MeshAt;
 use crate::layers::mesh::model::MeshLayer;
 use crate::layers::mesh::synth::Synth;
 use crate::layers::parts::materials::Materials;
@@ -93,7 +93,7 @@ fn moment(from: DVec3, side: usize) -> Moment {
 
 /// What is made of what a frame shows.
 fn seen<R>(synth: &Synth, moment: &Moment, make: impl FnOnce(&Given) -> R) -> R {
-    make(&Seen::new(synth, moment).given_alone().unwrap())
+    make(&MeshAt::new(synth, moment).given_alone().unwrap())
 }
 
 /// The values and the shares of the variance of the noise, on the pixels of the layer.
@@ -336,7 +336,7 @@ fn what_is_in_front_changes_nothing_beside_it() {
     let ready = ready_of(&synth);
     let moment = moment(DVec3::Z * 2.6, 128);
     let alone = seen(&synth, &moment, |given| Scene::new(ready, given).noise(&ready.strokes.noises["a"]).value);
-    let seen_again = Seen::new(&synth, &moment);
+    let seen_again = MeshAt::new(&synth, &moment);
     let mut given = seen_again.given_alone().unwrap();
     for i in (0..given.triangle.len()).filter(|i| i % 128 < 50) {
         (given.inverse[i], given.triangle[i]) = (1.0, NONE);

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 /// How a window opens and behaves.
-pub struct Manner {
+pub struct WindowOptions {
     /// What the scene is called.
     pub name: String,
-    /// The beginning of the names of its shots.
-    pub shots: PathBuf,
+    /// The beginning of the names of its screenshots.
+    pub screenshots: PathBuf,
     /// The largest side of a picture that is given to the GPU, in pixels.
     pub most: usize,
     /// Whether it takes the keyboard when it opens, as a window does that somebody asked for.
