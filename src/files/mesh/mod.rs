@@ -182,6 +182,10 @@ fn kind(start: &[u8], place: &str) -> Result<Format> {
     let is_text = !start.contains(&0);
     let first = text.trim_ascii_start().first();
     if foreign.is_none() && first == Some(&b'{') {
+        let names = |key: &str| String::from_utf8_lossy(text).contains(key);
+        if names("\"plica\"") && !names("\"asset\"") {
+            return Err(Error::at(place, "is a Plica scene, not a mesh").cure("plica edit opens it"));
+        }
         return Ok(Format::Gltf);
     }
     if foreign.is_none() && is_text && (obj::begins(text) || name.ends_with(".obj") && first != Some(&b'<')) {

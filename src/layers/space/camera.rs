@@ -196,9 +196,10 @@ impl Camera {
             let problem = Problem::warning(format!("/keys/{i}"), "the key names nothing, so nothing moves by it");
             problem.hint("give it a position, a target or fov, or delete it")
         }));
-        if self.keys.is_empty() {
+        let has_up = DVec3::from(self.up).length() > 0.0;
+        if self.keys.is_empty() || !has_up {
             let wrong = view_problem(self.view(0.0).0);
-            let path = if DVec3::from(self.up).length() == 0.0 { "/up" } else { "/position" };
+            let path = if has_up { "/position" } else { "/up" };
             problems.extend(wrong.map(|(what, cure)| Problem::error(path, what).hint(cure)));
             return problems;
         }
@@ -285,6 +286,7 @@ mod tests {
             (r#"{"position": [1, 2, 3], "target": [1, 2, 3]}"#, "/position", "the camera stands where it looks"),
             (r#"{"position": [0, 2, 0], "target": [0, 0, 0]}"#, "/position", "the camera looks along its up"),
             (r#"{"up": [0, 0, 0]}"#, "/up", "the camera has no direction that is up"),
+            (r#"{"up": [0, 0, 0], "keys": [{"at": 0, "fov": 30}]}"#, "/up", "the camera has no direction that is up"),
             (
                 r#"{"keys": [{"at": 0, "position": [1, 0, 0]}, {"at": 1, "position": [0, 0.8, 0]}]}"#,
                 "/keys/1",

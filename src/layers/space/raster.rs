@@ -22,6 +22,9 @@ pub const NONE: u32 = u32::MAX;
 /// How far beyond its corners a triangle may reach by rounding, in pixels.
 const SLACK_PX: f64 = 1e-6;
 
+/// Of triangles that may cover more columns than these, the columns are found that they may cover in a row: slivers cover few.
+const WIDE: usize = 16;
+
 /// Triangles as one eye sees them.
 pub struct Raster<'a> {
     triangles: &'a [[u32; 3]],
@@ -101,6 +104,22 @@ impl Sides {
         (inside(0) && inside(1) && inside(2)).then(|| self.volume / (weights[0] + weights[1] + weights[2]))
     }
 
+    /// Those of the columns `from..to` that it may cover in the row whose rays go down by `y`. The rays of columns, `along`, ascend.
+    fn narrowed(&self, along: &[f64], y: f64, [mut from, mut to]: [usize; 2]) -> [usize; 2] {
+        for plane in &self.inward {
+            let side = -(plane.y * y - plane.z) / plane.x;
+            // Beside a side by more than a column, no rounding leads across it.
+            match plane.x {
+                slope if slope > 0.0 && side.is_finite() => {
+                    from = from.max(along.partition_point(|x| *x < side).saturating_sub(1));
+                }
+                slope if slope < 0.0 && side.is_finite() => to = to.min(along.partition_point(|x| *x <= side) + 1),
+                _ => {}
+            }
+        }
+        [from, to.max(from)]
+    }
+
     /// `inward`, in the order in which the mesh has the corners.
     fn of_corners(&self) -> [DVec3; 3] {
         let mut planes = [DVec3::ZERO; 3];
@@ -171,7 +190,11 @@ impl<'a> Raster<'a> {
         let down = self.rays.1[y];
         for &triangle in &self.of_rows[self.starts[y]..self.starts[y + 1]] {
             let Some(sides) = self.sides(triangle as usize) else { continue };
-            let [from, to] = self.spans[triangle as usize].columns.map(|x| x as usize);
+            let mut columns_of = self.spans[triangle as usize].columns.map(|x| x as usize);
+            if columns_of[1] - columns_of[0] > WIDE {
+                columns_of = sides.narrowed(&self.rays.0, down, columns_of);
+            }
+            let [from, to] = columns_of;
             let mut meet = |cell: usize, along: f64| {
                 if let Some(found) = sides.depth(along, down)
                     && (NEAR_M..depth[cell]).contains(&found)
@@ -329,6 +352,42 @@ mod tests {
             }
         }
         assert_eq!((hits, sum), (2321, 0xb052_56b0_546b_12fc));
+    }
+
+    #[test]
+    fn what_a_row_looks_at_is_all_that_a_triangle_covers() {
+        let mut state = 7_u32;
+        let mut any = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(state >> 8) / f64::from(1 << 24)
+        };
+        // Some corners lie on whole columns and rows, and some triangles are slivers across the frame.
+        let mut corner = |k: usize| {
+            let (x, y, depth) = (any() * 60.0 - 10.0, any() * 50.0 - 10.0, any() * 4.0 - 0.5);
+            if k.is_multiple_of(3) { at(x.round() + 0.5, y.round() + 0.5, depth) } else { at(x, y, depth) }
+        };
+        let seen: Vec<DVec3> = (0..600).map(&mut corner).collect();
+        let triangles: Vec<[u32; 3]> = (0..598).map(|i| [i, i + 1, if i % 4 == 0 { i + 1 } else { i + 2 }]).collect();
+        let raster = Raster::new(&eye(), SIZE, CENTER, &triangles, seen, true);
+        let mut covered = 0;
+        for y in 0..SIZE.1 {
+            let (mut depth, mut shown) = (vec![f64::INFINITY; SIZE.0], vec![NONE; SIZE.0]);
+            raster.row(y, Columns::All, &mut depth, &mut shown);
+            for x in 0..SIZE.0 {
+                let mut nearest = (f64::INFINITY, NONE);
+                for (i, triangle) in triangles.iter().enumerate() {
+                    let corners = triangle.map(|corner| raster.seen[corner as usize]);
+                    let sides = Sides::new(corners, order(corners), true);
+                    let found = sides.and_then(|sides| sides.depth(raster.rays.0[x], raster.rays.1[y]));
+                    if let Some(found) = found.filter(|found| (NEAR_M..nearest.0).contains(found)) {
+                        nearest = (found, i as u32);
+                    }
+                }
+                assert_eq!((depth[x], shown[x]), nearest, "{x} {y}");
+                covered += usize::from(nearest.1 != NONE);
+            }
+        }
+        assert!(covered > 600, "{covered}");
     }
 
     #[test]

@@ -55,6 +55,7 @@ fn what_is_no_mesh_says_what_it_is() {
     const COPY: &str = "(copy it again from where it came, or export it again)";
     for (name, bytes, expected) in [
         ("a.obj", &b"\x89PNG\r\n\x1a\n"[..], format!("is a PNG picture, not a mesh {RENAME}")),
+        ("a.json", br#"{ "plica": 1 }"#, "is a Plica scene, not a mesh (plica edit opens it)".into()),
         ("a.glb", b"\xff\xd8\xff\xe0", format!("is a JPEG picture, not a mesh {RENAME}")),
         ("a.obj", b"\0\0\0\x20ftypavif\0\0\0\0", format!("is an AVIF picture, not a mesh {RENAME}")),
         ("a.obj", b"ply\nformat ascii 1.0\n", format!("is a PLY mesh, which Plica does not read {EXPORT}")),
