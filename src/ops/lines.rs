@@ -68,26 +68,12 @@ const WIDE: usize = 6;
 const OF_THREE: usize = 5;
 
 fn header(entries: &[Entry]) -> String {
-    let heads = columns(entries).map(|entry| match &entry.value {
-        Value::Coordinates(numbers, unit) => {
-            format!("{:>1$}", format!("{}, {unit}", entry.label), numbers.len() * (OF_THREE + 1) - 1)
-        }
-        Value::Index(_) => format!("{:>OF_THREE$}", entry.label),
-        Value::Number(_)
-        | Value::Of(_)
-        | Value::Vector(_)
-        | Value::Place(_)
-        | Value::List(_)
-        | Value::Flag { .. }
-        | Value::Color(_)
-        | Value::Indices(_)
-        | Value::Shares(_)
-        | Value::Group(_)
-        | Value::Items(_) => {
-            format!("{:>WIDE$}", entry.label)
-        }
-    });
-    heads.collect::<Vec<_>>().join(" ")
+    let head = |entry: &Entry| {
+        let (width, label) = (cell(&entry.value).0, entry.label);
+        let unit = if let Value::Coordinates(_, unit) = &entry.value { format!(", {unit}") } else { String::new() };
+        format!("{:>width$}", format!("{label}{unit}"))
+    };
+    columns(entries).map(head).collect::<Vec<_>>().join(" ")
 }
 
 /// A number with as many decimals as fit, two at most.
@@ -97,26 +83,28 @@ fn fitted(number: f64) -> String {
 }
 
 fn row(entries: &[Entry]) -> String {
-    let cells = columns(entries).map(|entry| match &entry.value {
+    let text = |entry: &Entry| {
+        let (width, text) = cell(&entry.value);
+        format!("{text:>width$}")
+    };
+    columns(entries).map(text).collect::<Vec<_>>().join(" ")
+}
+
+/// The width of a cell, and what it says.
+fn cell(value: &Value) -> (usize, String) {
+    match value {
         Value::Coordinates(numbers, _) => {
-            numbers.iter().map(|v| format!("{:>OF_THREE$}", fitted(*v))).collect::<Vec<_>>().join(" ")
+            let each: Vec<String> = numbers.iter().map(|v| format!("{:>OF_THREE$}", fitted(*v))).collect();
+            ((numbers.len() * (OF_THREE + 1)).saturating_sub(1), each.join(" "))
         }
-        Value::Number(number) => format!("{:>WIDE$}", short(*number, 3)),
-        Value::Index(index) => format!("{index:>OF_THREE$}"),
-        Value::Of(Some(word)) => format!("{word:>WIDE$}"),
-        // Of flow lines nothing else is told.
-        Value::Of(None)
-        | Value::Vector(_)
-        | Value::Place(_)
-        | Value::List(_)
-        | Value::Flag { .. }
-        | Value::Color(_)
-        | Value::Indices(_)
-        | Value::Shares(_)
-        | Value::Group(_)
-        | Value::Items(_) => " ".repeat(WIDE),
-    });
-    cells.collect::<Vec<_>>().join(" ")
+        Value::Index(index) => (OF_THREE, index.to_string()),
+        Value::Number(number) => (WIDE, short(*number, 3)),
+        Value::Of(word) => (WIDE, word.clone().unwrap_or_default()),
+        // Nothing else is told of flow lines.
+        Value::Vector(_) | Value::Place(_) | Value::List(_) | Value::Flag { .. } => (WIDE, String::new()),
+        Value::Color(_) | Value::Indices(_) | Value::Shares(_) => (WIDE, String::new()),
+        Value::Group(_) | Value::Items(_) => (WIDE, String::new()),
+    }
 }
 
 #[cfg(test)]

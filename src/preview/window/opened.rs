@@ -105,26 +105,11 @@ impl OpenWindow {
 
     /// The same window on a new device.
     pub fn anew(self) -> Result<OpenWindow> {
-        let OpenWindow { window, gpu, screen, desk, covered, shape, screenshots, .. } = self;
-        let instance = gpu.instance().clone();
-        drop((gpu, screen)); // a window has one surface at a time
-        let (gpu, screen) = Screen::open(instance, window.clone())?;
+        let instance = self.gpu.instance().clone();
+        drop((self.gpu, self.screen)); // a window has one surface at a time
+        let (gpu, screen) = Screen::open(instance, self.window.clone())?;
         let (passes, looked_from, by_cpu) = Default::default();
-        let (hidden, looked) = Default::default();
-        Ok(OpenWindow {
-            window,
-            gpu,
-            screen,
-            hidden,
-            covered,
-            desk,
-            looked,
-            shape,
-            passes,
-            looked_from,
-            by_cpu,
-            screenshots,
-        })
+        Ok(OpenWindow { gpu, screen, hidden: false, looked: None, passes, looked_from, by_cpu, ..self })
     }
 
     /// Whether the window can be seen: checked now and then while it can, and at every drawing while it cannot.
