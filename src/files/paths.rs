@@ -2,6 +2,7 @@
 
 use std::fs::File;
 use std::io::{self, Read};
+use std::os::fd::OwnedFd;
 use std::path::{Path, PathBuf};
 
 use super::{Options, disk};
@@ -71,13 +72,22 @@ fn folder_of_scene(scene_path: &Path) -> PathBuf {
 /// If the path leads out of the scene's folder and [`Options::allow_outside`] is not set; if there is no such file; if
 /// it is a folder, a device, a FIFO or a socket.
 pub fn open(scene_path: &Path, path: &str, options: &Options) -> Result<File> {
-    let opened = if options.allow_outside {
+    let opened = opened(scene_path, path, options);
+    let file = File::from(opened.map_err(|error| explain(path, &folder_of_scene(scene_path).join(path), error))?);
+    regular(file, path)
+}
+
+/// Whether [`open`] fails as there is no such file.
+pub fn is_missing(scene_path: &Path, path: &str, options: &Options) -> bool {
+    opened(scene_path, path, options).is_err_and(|error| error.kind() == io::ErrorKind::NotFound)
+}
+
+fn opened(scene_path: &Path, path: &str, options: &Options) -> io::Result<OwnedFd> {
+    if options.allow_outside {
         beneath::open_anywhere(&beside(scene_path, path))
     } else {
         beneath::open(&folder_of_scene(scene_path), Path::new(file_of(path)))
-    };
-    let file = File::from(opened.map_err(|error| explain(path, &folder_of_scene(scene_path).join(path), error))?);
-    regular(file, path)
+    }
 }
 
 /// Opens a file that a person named.

@@ -106,7 +106,7 @@ impl Sources<'_> {
         });
         let start = match start {
             Ok(start) => start,
-            Err(error) => return vec![(self.key(first), Err(first_missing(error, clip)))],
+            Err(error) => return vec![(self.key(first), Err(self.no_frame(error, first, clip, 0)))],
         };
         let size = (start.value.width(), start.value.height());
         let like_first = |file: File, place: &str, allowed: Allowed, _: mesh::Opener| {
@@ -116,7 +116,7 @@ impl Sources<'_> {
         };
         allowed.expect(rest.len());
         let load = |(before, path): (usize, &String)| {
-            let loaded = one(path, &like_first).map_err(|error| frame_missing(error, before + 1));
+            let loaded = one(path, &like_first).map_err(|error| self.no_frame(error, path, clip, before + 1));
             allowed.progress.iter().for_each(|progress| progress.done(1));
             // What was read before, as the first of another clip, say, has not been compared.
             loaded.and_then(|frame| same_size(path, (frame.value.width(), frame.value.height()), size).map(|()| frame))
@@ -141,19 +141,28 @@ impl Sources<'_> {
 
     /// What to do if the path of a clip is that of a folder.
     fn no_folder(&self, error: Error, clip: &scene::Clip) -> Error {
-        match error {
-            Error::Failed { place, what, .. } if what.ends_with("is a folder, not a file") => {
-                let found = match self.place {
-                    Whereabouts::Beside(scene_path) => files::clips::find(&paths::beside(scene_path, &clip.path)).ok(),
-                    Whereabouts::Copies(_) => None,
-                };
-                let (name, first) = found.map_or(("%04d.png".into(), 0), |found| (found.name, found.first));
-                let from = if first > 0 { format!(", and \"first\": {first}") } else { String::new() };
-                let cure = format!("write {}/{name}{from}", clip.path.trim_end_matches('/'));
-                Error::Failed { place, what, cure: Some(cure) }
-            }
-            other => other,
+        let Whereabouts::Beside(scene_path) = self.place else { return error };
+        let folder = paths::beside(scene_path, &clip.path);
+        if !folder.is_dir() {
+            return error;
         }
+        let found = files::clips::find(&folder).ok();
+        let (name, first) = found.map_or(("%04d.png".into(), 0), |found| (found.name, found.first));
+        let from = if first > 0 { format!(", and \"first\": {first}") } else { String::new() };
+        error.cure(format!("write {}/{name}{from}", clip.path.trim_end_matches('/')))
+    }
+
+    /// What to do if a frame is not there; `before` it are others.
+    fn no_frame(&self, error: Error, path: &str, clip: &scene::Clip, before: usize) -> Error {
+        let Whereabouts::Beside(scene_path) = self.place else { return error };
+        if !paths::is_missing(scene_path, path, self.options) {
+            return error;
+        }
+        error.cure(match before {
+            0 => format!("the clip begins with number {}: if others are there, set first", clip.first),
+            // Only a clip that says how many there are counts on one that is not there.
+            _ => format!("lower the clip's count to {before}, or put the frame there"),
+        })
     }
 
     fn is_there(&self, path: &str) -> bool {
@@ -199,28 +208,6 @@ fn same_size(place: &str, found: (usize, usize), first: (usize, usize)) -> Resul
     }
     let what = format!("is {} x {}, and the clip's first frame {} x {}", found.0, found.1, first.0, first.1);
     Err(Error::at(place, what).cure("make all frames of one size"))
-}
-
-/// What to do if already the first frame is not there.
-fn first_missing(error: Error, clip: &scene::Clip) -> Error {
-    match error {
-        Error::Failed { place, what, .. } if what.ends_with("no such file") => {
-            let cure = format!("the clip begins with number {}: if others are there, set first", clip.first);
-            Error::Failed { place, what, cure: Some(cure) }
-        }
-        other => other,
-    }
-}
-
-/// What to do if a frame after the first is not there, of a clip that counts on it; `before` it are others.
-fn frame_missing(error: Error, before: usize) -> Error {
-    match error {
-        Error::Failed { place, what, .. } if what.ends_with("no such file") => {
-            let cure = format!("lower the clip's count to {before}, or put the frame there");
-            Error::Failed { place, what, cure: Some(cure) }
-        }
-        other => other,
-    }
 }
 
 /// Warns of what is not supported; what holds for several frames is told once.
