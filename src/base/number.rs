@@ -27,6 +27,11 @@ pub fn rounded(value: f64, decimals: u32) -> f64 {
     (value * parts).round() / parts
 }
 
+/// [`rounded`], as JSON.
+pub fn rounded_json(value: f64, decimals: u32) -> Value {
+    json(rounded(value, decimals))
+}
+
 /// How many decimals tell a size in so many units of the last of them, up to nine.
 pub fn decimals(size: f64, units: f64) -> u32 {
     const MOST: u32 = 9;
@@ -35,7 +40,12 @@ pub fn decimals(size: f64, units: f64) -> u32 {
 
 /// Rounds away the floating-point noise of a computed number.
 pub fn tidy(value: f64) -> f64 {
-    let rounded = rounded(value, 9);
+    tidied(value, 9)
+}
+
+/// The same to so many decimals. Large numbers have no meaningful ones that far down.
+pub fn tidied(value: f64, decimals: u32) -> f64 {
+    let rounded = rounded(value, decimals);
     if rounded.is_finite() && rounded.abs() < 1e6 { rounded + 0.0 } else { value }
 }
 

@@ -20,6 +20,13 @@ impl<'a> Pointer<'a> {
         joined
     }
 
+    /// The first token, and the way from there; `None` for the whole document.
+    pub fn first(self) -> Option<(String, &'a str)> {
+        let rest = self.0.strip_prefix('/')?;
+        let (token, way) = rest.split_at(rest.find('/').unwrap_or(rest.len()));
+        Some((unescaped(token), way))
+    }
+
     /// The pointer to the parent, and the last token; `None` for the whole document.
     pub fn split(self) -> Option<(&'a str, String)> {
         let (parent, last) = self.0.rsplit_once('/')?;
@@ -51,11 +58,15 @@ impl<'a> Pointer<'a> {
         self.below(outer).is_some()
     }
 
+    /// The index of the item of `list` that this is.
+    pub fn item(self, list: &str) -> Option<usize> {
+        self.item_of(list).filter(|(_, way)| way.is_empty()).map(|(index, _)| index)
+    }
+
     /// The index of the item of `list` that this is or is in, and the way from that item to here.
     pub fn item_of(self, list: &str) -> Option<(usize, &'a str)> {
-        let rest = self.below(list)?.strip_prefix('/')?;
-        let (token, way) = rest.split_at(rest.find('/').unwrap_or(rest.len()));
-        Some((index(token)?, way))
+        let (token, way) = Pointer(self.below(list)?).first()?;
+        Some((index(&token)?, way))
     }
 }
 

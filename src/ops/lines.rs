@@ -77,7 +77,7 @@ fn header(entries: &[Entry]) -> String {
 }
 
 /// A number with as many decimals as fit, two at most.
-fn fitted(number: f64) -> String {
+fn of_three(number: f64) -> String {
     let texts = [2, 1, 0].map(|decimals| short(number, decimals));
     texts.iter().find(|text| text.len() <= OF_THREE).unwrap_or(&texts[2]).clone()
 }
@@ -94,7 +94,7 @@ fn row(entries: &[Entry]) -> String {
 fn cell(value: &Value) -> (usize, String) {
     match value {
         Value::Coordinates(numbers, _) => {
-            let each: Vec<String> = numbers.iter().map(|v| format!("{:>OF_THREE$}", fitted(*v))).collect();
+            let each: Vec<String> = numbers.iter().map(|v| format!("{:>OF_THREE$}", of_three(*v))).collect();
             ((numbers.len() * (OF_THREE + 1)).saturating_sub(1), each.join(" "))
         }
         Value::Index(index) => (OF_THREE, index.to_string()),

@@ -58,7 +58,7 @@ impl Edit {
     /// changes.
     pub fn overruled(&self, document: &Document) -> Option<String> {
         let camera = document.scene().camera.as_ref()?;
-        let named = |path: &'_ str| path.strip_prefix("/camera/")?.split('/').next().map(str::to_owned);
+        let named = |path: &str| Pointer(Pointer(path).below("/camera")?).tokens().next();
         let ruled = |field: &String| camera.is_ruled(field);
         let field = self.0.iter().find_map(|one| named(one.path().as_str()).filter(ruled))?;
         Some(format!("the camera's keys rule its {field}, so this is not seen (:camera key in the editor sets them)"))

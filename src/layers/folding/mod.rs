@@ -62,6 +62,7 @@ use super::starts::{Starts, Template};
 use super::technique::{Bundle, Checked, Count, Counted, Kind, Technique, Turned};
 use super::timeline::{Timeline, Wrap};
 use crate::base::change::Change;
+use crate::base::pointer::Pointer;
 use crate::base::problem::Problem;
 
 /// The technique.
@@ -169,8 +170,7 @@ impl Technique for PictureLayer {
     }
 
     fn item_name(&self, path: &str) -> Option<&str> {
-        let zone = path.strip_prefix("/zones/")?.parse::<usize>().ok()?;
-        self.zones.get(zone).map(|zone| zone.name.as_str())
+        self.zones.get(Pointer(path).item("/zones")?).map(|zone| zone.name.as_str())
     }
 
     fn curves(&self, wrap: Wrap) -> Vec<Curve<'_>> {

@@ -23,23 +23,17 @@ pub fn neat_pair(at: Point) -> Value {
 
 /// A number of something new: at most three decimals, none if it is whole.
 pub fn neat(x: f64) -> Value {
-    number::json(number::rounded(x, 3))
+    number::rounded_json(x, 3)
 }
 
 /// A number without floating-point noise: pixels, to a millionth.
 pub fn px(x: f64) -> Value {
-    rounded(x, 6)
+    number::json(number::tidied(x, 6))
 }
 
 /// A factor, an angle or a fraction, to nine decimals.
 pub fn ratio(x: f64) -> Value {
-    rounded(x, 9)
-}
-
-fn rounded(x: f64, decimals: u32) -> Value {
-    let near = number::rounded(x, decimals);
-    // Larger numbers have no meaningful decimals that far down.
-    number::json(if near.is_finite() && x.abs() < 1e6 { near } else { x })
+    number::json(number::tidy(x))
 }
 
 /// Both coordinates of a place or a vector in pixels.

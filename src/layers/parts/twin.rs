@@ -1,5 +1,5 @@
 //! Structs that Rust fills and shaders read: what has to be the same on both sides, for the test that it is
-//! (`tests/gpu.rs`).
+//! (`tests/gpu/`).
 
 /// A struct as Rust lays it out.
 #[derive(Clone, Copy, Debug)]

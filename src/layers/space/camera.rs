@@ -8,6 +8,7 @@ use serde_json::Value;
 use super::eye::Eye;
 use crate::base::geometry::Xyz;
 use crate::base::number;
+use crate::base::pointer::Pointer;
 use crate::base::problem::Problem;
 use crate::base::text::short;
 use crate::layers::check;
@@ -134,13 +135,13 @@ impl Camera {
 
     /// What stands for a field of a key that does not name it: what the other keys say at its time.
     pub fn automatic(&self, path: &str) -> Option<Value> {
-        let (index, field) = path.strip_prefix("/keys/")?.split_once('/')?;
-        let at = self.keys.get(index.parse::<usize>().ok()?)?.at;
+        let (index, field) = Pointer(path).item_of("/keys")?;
+        let at = self.keys.get(index)?.at;
         let place = |at: Xyz| at.map(number::json).into_iter().collect();
         match field {
-            "position" => Some(place(self.components(at, self.position, |key| key.position))),
-            "target" => Some(place(self.components(at, self.target, |key| key.target))),
-            "fov" => Some(number::json(self.components(at, [self.fov], |key| key.fov.map(|fov| [fov]))[0])),
+            "/position" => Some(place(self.components(at, self.position, |key| key.position))),
+            "/target" => Some(place(self.components(at, self.target, |key| key.target))),
+            "/fov" => Some(number::json(self.components(at, [self.fov], |key| key.fov.map(|fov| [fov]))[0])),
             _ => None,
         }
     }

@@ -9,6 +9,7 @@ use super::look::FullLook;
 use super::model::{Surge, WaterfallLayer, WindMode};
 use super::path::Laws;
 use crate::base::maths::{cos, sin};
+use crate::base::pointer::Pointer;
 
 /// The gravity of water, in m/s2, whatever that of the layer is.
 const EARTH: f64 = 9.81;
@@ -135,14 +136,13 @@ impl Values {
     /// The number, or numbers, that stand for a field which is not set, by its JSON pointer in the layer.
     pub fn field(&self, path: &str) -> Option<Value> {
         let [water, foam] = &self.kinds;
-        if let Some(index) = path.strip_prefix("/lip/").and_then(|rest| rest.strip_suffix("/velocity")) {
-            let node = self.lip.get(index.parse::<usize>().ok()?)?;
-            return Some(json!(node.velocity.to_array()));
+        if let Some((index, "/velocity")) = Pointer(path).item_of("/lip") {
+            return Some(json!(self.lip.get(index)?.velocity.to_array()));
         }
-        if let Some(field) = path.strip_prefix("/look/") {
+        if let Some(field) = Pointer(path).below("/look") {
             return look(&water.look, field);
         }
-        if let Some(field) = path.strip_prefix("/foam/look/") {
+        if let Some(field) = Pointer(path).below("/foam/look") {
             return look(&foam.look, field);
         }
         Some(match path {
@@ -166,17 +166,17 @@ impl Values {
 
 fn look(look: &FullLook, field: &str) -> Option<Value> {
     Some(match field {
-        "width" => json!(look.width),
-        "jitter" => json!(look.jitter),
-        "streak" => json!(look.streak),
-        "align" => json!(look.align),
-        "snap" => json!(look.snap),
-        "tilt" => json!(look.tilt),
-        "spin" => json!(look.spin),
-        "mirror" => json!(look.mirror),
-        "opacity" => json!(look.opacity),
-        "fade" => json!(look.fade),
-        "gain" => json!(look.gain),
+        "/width" => json!(look.width),
+        "/jitter" => json!(look.jitter),
+        "/streak" => json!(look.streak),
+        "/align" => json!(look.align),
+        "/snap" => json!(look.snap),
+        "/tilt" => json!(look.tilt),
+        "/spin" => json!(look.spin),
+        "/mirror" => json!(look.mirror),
+        "/opacity" => json!(look.opacity),
+        "/fade" => json!(look.fade),
+        "/gain" => json!(look.gain),
         _ => return None,
     })
 }

@@ -84,9 +84,9 @@ impl Strokes {
         if path == "/style" {
             return Some(Value::from("hatching"));
         }
-        let Some(of_mark) = path.strip_prefix("/marks/") else { return self.whole().pointer(path).cloned() };
-        let (token, field) = of_mark.split_at(of_mark.find('/').unwrap_or(of_mark.len()));
-        let token = Pointer(&format!("/{token}")).tokens().next()?;
+        let Some((token, field)) = Pointer(path).below("/marks").and_then(|way| Pointer(way).first()) else {
+            return self.whole().pointer(path).cloned();
+        };
         let name = match pointer::index(&token) {
             Some(index) => self.written.get("marks")?.get(index)?.get("name")?.as_str()?.to_owned(),
             None => token,

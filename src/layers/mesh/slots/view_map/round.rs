@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::map::Map;
 use super::view::{Extremes, View};
 use crate::base::maths::{atan, atan2};
-use crate::base::number;
+use crate::base::number::rounded_json;
 use crate::layers::mesh::pose::Placed;
 use crate::layers::parts::shots::Put;
 use crate::layers::space::eye::Ray;
@@ -27,25 +27,21 @@ pub fn put(map: &Map, number: usize, put: Put, ray: &Ray, placed: &Placed) -> Re
     let place = met(view, placed, ray);
     match (put, &view.extremes) {
         (Put::Blend, _) => {
-            let written = |at: DVec3| at.to_array().map(|part| rounded(part, DECIMALS.1));
+            let written = |at: DVec3| at.to_array().map(|part| rounded_json(part, DECIMALS.1));
             Ok(("/blend/points".into(), json!({ "position": written(place), "target": written(view.target) })))
         }
         (Put::Nothing, _) | (Put::Extreme, Extremes::Points(_)) => {
-            let [right, up] = degrees(view, place).map(|angle| rounded(angle.clamp(-MOST, MOST), DECIMALS.0));
+            let [right, up] = degrees(view, place).map(|angle| rounded_json(angle.clamp(-MOST, MOST), DECIMALS.0));
             Ok((format!("/views/{number}/extremes/points"), json!([right, up])))
         }
         (Put::Extreme, Extremes::Auto(reach) | Extremes::Cone(reach)) => {
             // A ring where it is gone now.
             let far = (2.0 * atan(*reach)).to_degrees().min(MOST);
-            let [most, least] = [far, -far].map(|angle| rounded(angle, DECIMALS.0));
+            let [most, least] = [far, -far].map(|angle| rounded_json(angle, DECIMALS.0));
             let ring = json!([[most, 0], [0, most], [least, 0], [0, least]]);
             Ok((format!("/views/{number}/extremes"), json!({ "kind": "points", "points": ring })))
         }
     }
-}
-
-fn rounded(value: f64, decimals: u32) -> Value {
-    number::json(number::rounded(value, decimals))
 }
 
 /// Where a ray first meets the sphere; where it passes by, the place of the sphere that is nearest to it.

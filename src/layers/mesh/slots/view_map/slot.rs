@@ -14,6 +14,7 @@ use super::wanted::{laid_flat, misfits, wanted};
 use super::{atlas, bundle, check, lay, marks, passes, plan, warnings};
 use crate::base::budget::Share;
 use crate::base::mesh::Mesh;
+use crate::base::pointer::Pointer;
 use crate::base::problem::Problem;
 use crate::layers::mesh::added::Added;
 use crate::layers::mesh::surface::{Before, ReadySurface, SurfaceSlot};
@@ -68,8 +69,7 @@ impl SurfaceSlot for ViewMap {
     }
 
     fn item_name(&self, path: &str) -> Option<&str> {
-        let index: usize = path.strip_prefix("/views/")?.parse().ok()?;
-        self.views.get(index).map(|view| view.name.as_str())
+        self.views.get(Pointer(path).item("/views")?).map(|view| view.name.as_str())
     }
 
     fn needs_uv(&self) -> bool {
