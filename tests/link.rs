@@ -20,7 +20,7 @@ use plica::preview::editor::{Event, Preview, Status};
 use plica::preview::follow::Update;
 use plica::preview::follow::client::{self, Link};
 use plica::preview::wire::frame::{self, most};
-use plica::preview::wire::message::{FromEditor, Role, ToEditor};
+use plica::preview::wire::message::{FromEditor, Gesture, Role, ToEditor};
 use plica::preview::wire::socket::socket_path;
 use plica::scene::Document;
 use plica::scene::edit::Edit;
@@ -142,9 +142,9 @@ fn shown(link: &Link, revision: u64) {
 fn a_window_gets_the_state_and_then_joined_edits() {
     let stage = stage();
     let (editor, events) = stage.editor();
-    editor.select(Some("/layers/0".into()));
+    editor.say(FromEditor::Selection(Some("/layers/0".into())));
     let half = Transport { playing: true, time: 0.5, speed: 2.0 };
-    editor.transport(half);
+    editor.say(FromEditor::Transport(half));
     let window = stage.window();
     assert_eq!(next_title(&window), ("0".into(), 0));
     let selection = next(&window, |update| match update {
@@ -177,15 +177,15 @@ fn the_editor_hears_the_window() {
     let window = stage.window();
     next_title(&window);
     let report = |fps| ToEditor::Report { fps, adapter: "a\u{1b}b".into(), notice: String::new() };
-    window.replies.send(ToEditor::Pointer { x: f64::NAN, y: 0.0 }).unwrap();
+    window.replies.send(Gesture::Pointer { x: f64::NAN, y: 0.0 }.into()).unwrap();
     window.replies.send(report(60.0)).unwrap();
-    window.replies.send(ToEditor::Pointer { x: 1.5, y: -2.0 }).unwrap();
-    window.replies.send(ToEditor::Transport(Transport { playing: true, time: 0.5, speed: 2.0 })).unwrap();
-    window.replies.send(ToEditor::Command("mark-point".into())).unwrap();
+    window.replies.send(Gesture::Pointer { x: 1.5, y: -2.0 }.into()).unwrap();
+    window.replies.send(Gesture::Transport(Transport { playing: true, time: 0.5, speed: 2.0 }).into()).unwrap();
+    window.replies.send(Gesture::Command("mark-point".into()).into()).unwrap();
     let mut heard = Vec::new();
     while heard.len() < 3 {
         let event = events.recv_timeout(PATIENCE).expect("an event");
-        if let Event::Said(reply @ (ToEditor::Pointer { .. } | ToEditor::Transport(_) | ToEditor::Command(_))) = event {
+        if let Event::Said(ToEditor::Gesture(reply)) = event {
             heard.push(format!("{reply:?}"));
         }
     }
@@ -248,7 +248,7 @@ fn bad_peers_are_refused_and_harm_nobody() {
     let mut edit = hello(Role::Window);
     frame::write(&mut edit, &ToEditor::Edit { revision: 0, patch: Edit::default() }).unwrap();
     let mut pointer = hello(Role::Script);
-    frame::write(&mut pointer, &ToEditor::Pointer { x: 0.0, y: 0.0 }).unwrap();
+    frame::write(&mut pointer, &ToEditor::from(Gesture::Pointer { x: 0.0, y: 0.0 })).unwrap();
     let mut newer = hello(Role::Window);
     newer[4] = 9;
     let mut huge = hello(Role::Window);

@@ -18,7 +18,7 @@ use plica::preview::follow::client::Link;
 use plica::preview::remote::address::Address;
 use plica::preview::remote::ssh::Way;
 use plica::preview::remote::{far, fetch};
-use plica::preview::wire::message::{FromEditor, ToEditor};
+use plica::preview::wire::message::{FromEditor, Gesture, ToEditor};
 use plica::scene::{Document, Edit, Scene};
 use serde_json::json;
 
@@ -172,7 +172,7 @@ fn the_file_is_followed_there_with_its_pictures() {
 fn an_editor_there_is_joined_and_hears_the_window() {
     let stage = stage();
     let (editor, events) = stage.editor();
-    editor.select(Some("/layers/0".into()));
+    editor.say(FromEditor::Selection(Some("/layers/0".into())));
     editor.view("view-field");
     let window = stage.window();
     window.shows("0");
@@ -182,12 +182,12 @@ fn an_editor_there_is_joined_and_hears_the_window() {
     let (document, edit) = titled(&stage.document, "1");
     editor.publish(&document, 1, &edit);
     window.shows("1");
-    editor.select(Some("/images".into()));
+    editor.say(FromEditor::Selection(Some("/images".into())));
     window.next(selected);
     for reply in [
         ToEditor::Report { fps: 60.0, adapter: "far".into(), notice: String::new() },
-        ToEditor::Pointer { x: 1.0, y: 2.0 },
-        ToEditor::Command("play".into()),
+        Gesture::Pointer { x: 1.0, y: 2.0 }.into(),
+        Gesture::Command("play".into()).into(),
     ] {
         window.link.replies.send(reply.clone()).unwrap();
         loop {
@@ -244,7 +244,7 @@ fn who_does_not_want_to_wait_tries_now() {
     window.notice("again in 5 s, T tries now");
     std::fs::rename(&away, stage.folder.path().join("ssh")).unwrap();
     let began = std::time::Instant::now();
-    window.link.replies.send(ToEditor::Command("try-now".into())).unwrap();
+    window.link.replies.send(Gesture::Command("try-now".into()).into()).unwrap();
     window.notice("far: connected again");
     assert!(began.elapsed() < Duration::from_secs(4), "{:?}", began.elapsed());
 }

@@ -10,7 +10,7 @@ use display::{Display, Place, View, corner};
 use plica::files::{Options, scene};
 use plica::preview::Transport;
 use plica::preview::editor::{Event, Preview};
-use plica::preview::wire::message::ToEditor;
+use plica::preview::wire::message::{FromEditor, Gesture, ToEditor};
 use plica::scene::edit::Edit;
 
 /// An editor of the scene, and the replies of its windows.
@@ -37,7 +37,7 @@ fn heard<T>(replies: &Receiver<ToEditor>, wanted: impl Fn(&ToEditor) -> Option<T
 
 fn transport(replies: &Receiver<ToEditor>) -> Transport {
     heard(replies, |reply| match reply {
-        ToEditor::Transport(transport) => Some(*transport),
+        ToEditor::Gesture(Gesture::Transport(transport)) => Some(*transport),
         _ => None,
     })
 }
@@ -54,7 +54,7 @@ fn editor_and_window_share_time_point_and_view() {
     view.shows("frame 0", &place.frame(0));
 
     let stands = |frame: u64| Transport { playing: false, time: time(frame), speed: 1.0 };
-    editor.transport(stands(5));
+    editor.say(FromEditor::Transport(stands(5)));
     view.shows("the editor's frame", &place.frame(5));
     view.keys(&["bracketright"]);
     let said = transport(&replies);
@@ -70,15 +70,19 @@ fn editor_and_window_share_time_point_and_view() {
     let at = [left + 100, top + 60].map(|n| n.to_string());
     display.tool("xdotool", &["mousemove", "--window", &view.window, &at[0], &at[1]]);
     view.keys(&["Return"]);
-    heard(&replies, |reply| matches!(reply, ToEditor::Pointer { x: 100.0, y: 60.0 }).then_some(()));
-    heard(&replies, |reply| matches!(reply, ToEditor::Command(name) if name == "mark-point").then_some(()));
+    heard(&replies, |reply| matches!(reply, ToEditor::Gesture(Gesture::Pointer { x: 100.0, y: 60.0 })).then_some(()));
+    heard(&replies, |reply| {
+        matches!(reply, ToEditor::Gesture(Gesture::Command(name)) if name == "mark-point").then_some(())
+    });
 
     for click in [false, true] {
         match click {
             true => drop(display.tool("xdotool", &["click", "1"])),
             false => view.keys(&["u"]),
         }
-        heard(&replies, |reply| matches!(reply, ToEditor::Command(name) if name == "select-point").then_some(()));
+        heard(&replies, |reply| {
+            matches!(reply, ToEditor::Gesture(Gesture::Command(name)) if name == "select-point").then_some(())
+        });
     }
 
     let bare = view.shot();

@@ -12,7 +12,7 @@ use plica::base::pixels::Frame;
 use plica::files::{Options, materials, scene};
 use plica::layers::space::camera::Camera;
 use plica::preview::editor::{Event, Preview};
-use plica::preview::wire::message::ToEditor;
+use plica::preview::wire::message::{Gesture, ToEditor};
 use plica::render::passes::{self, Asked};
 use plica::render::{self, cpu};
 
@@ -96,7 +96,7 @@ fn passes_are_shown_in_place_of_the_frame() {
     let (sender, replies) = channel();
     let document = scene::open(&place.scene, &Options::default()).unwrap();
     let editor = Preview::start(&place.scene, &document, 0, move |event| {
-        if let Event::Said(ToEditor::Command(command)) = event {
+        if let Event::Said(ToEditor::Gesture(Gesture::Command(command))) = event {
             drop(sender.send(command));
         }
     });
@@ -122,7 +122,7 @@ fn the_editor_is_told_where_the_window_looks_from() {
     let (sender, replies) = channel();
     let document = scene::open(&place.scene, &Options::default()).unwrap();
     let _editor = Preview::start(&place.scene, &document, 0, move |event| {
-        if let Event::Said(ToEditor::Camera(camera)) = event {
+        if let Event::Said(ToEditor::Gesture(Gesture::Camera(camera))) = event {
             drop(sender.send(camera));
         }
     });

@@ -14,7 +14,6 @@ use super::status::Status;
 use crate::base::error::{Error, Result};
 use crate::base::fault;
 use crate::base::problem::Problem;
-use crate::preview::views;
 use crate::preview::wire::connection::{HangUp, Wire};
 use crate::preview::wire::frame;
 use crate::preview::wire::message::{FromEditor, Role, ToEditor};
@@ -76,19 +75,16 @@ pub(in crate::preview) fn thread(name: &str, work: impl FnOnce() + Send + 'stati
 }
 
 impl State {
-    /// Tells the windows how something is now, except the one that said so. What they know already is not said again.
+    /// Tells the windows something, except the one that said so. Overlay and zoom commands are told one by one; of all else
+    /// only how it is now, and not again what they know already.
     pub fn say(&mut self, except: Option<u64>, message: FromEditor) {
-        if let Some(kind) = self.latest.say(message) {
-            let peers = self.peers.iter_mut().filter(|(id, _)| Some(**id) != except);
-            peers.for_each(|(_, peer)| peer.outbox.due(kind));
+        let others = self.peers.iter_mut().filter(|(id, _)| Some(**id) != except).map(|(_, peer)| &mut peer.outbox);
+        if let FromEditor::View(command) = message {
+            let told = self.latest.view(&command);
+            others.for_each(|outbox| outbox.view(&told));
+        } else if let Some(kind) = self.latest.say(message) {
+            others.for_each(|outbox| outbox.due(kind));
         }
-    }
-
-    /// An overlay or zoom command for the windows, except the one that gave it.
-    fn view(&mut self, except: Option<u64>, command: &str) {
-        let told = self.latest.view(command);
-        let peers = self.peers.iter_mut().filter(|(id, _)| Some(**id) != except);
-        peers.for_each(|(_, peer)| peer.outbox.view(&told));
     }
 
     /// What the status line says.
@@ -149,7 +145,7 @@ impl Shared {
 
     /// An overlay or zoom command for the windows.
     pub fn view(&self, command: &str) {
-        self.change(|state| state.view(None, command));
+        self.say(FromEditor::View(command.to_owned()));
     }
 
     /// The overlay and zoom commands in force where the scene is followed.
@@ -160,7 +156,7 @@ impl Shared {
         });
     }
 
-    /// Tells the windows how something is now; only the latest message of its kind counts.
+    /// Tells the windows something, as [`State::say`].
     pub fn say(&self, message: FromEditor) {
         self.change(|state| state.say(None, message));
     }
@@ -296,15 +292,9 @@ impl Shared {
                     }
                     self.heard(said);
                 }
-                ToEditor::Transport(transport) => {
-                    self.change(|state| state.say(Some(id), FromEditor::Transport(transport)));
+                ToEditor::Gesture(ref gesture) => {
+                    gesture.echo().into_iter().for_each(|echo| self.change(|state| state.say(Some(id), echo)));
                     self.heard(said);
-                }
-                ToEditor::Command(name) => {
-                    if views::is_for_all(&name) {
-                        self.change(|state| state.view(Some(id), &name));
-                    }
-                    self.heard(ToEditor::Command(name));
                 }
                 ToEditor::WantScene => self.outbox(id, Outbox::want_scene),
                 ToEditor::Want { hash, offset } => self.outbox(id, |outbox| outbox.want(hash, offset)),
@@ -312,7 +302,6 @@ impl Shared {
                 ToEditor::Hello { .. } | ToEditor::Edit { .. } => {
                     return Err(Error::at("link", "a window said what only a script says"));
                 }
-                said @ (ToEditor::Pointer { .. } | ToEditor::Camera(_)) => self.heard(said),
             }
         }
         Ok(())

@@ -15,7 +15,6 @@ use super::status::Status;
 use crate::base::error::Result;
 use crate::files::Options;
 use crate::layers::space::camera::Camera;
-use crate::preview::Transport;
 use crate::preview::wire::message::FromEditor;
 use crate::preview::wire::socket::{Door, Listener};
 use crate::scene::Document;
@@ -82,22 +81,6 @@ impl Preview {
     /// What they know already is not said again.
     pub fn say(&self, message: FromEditor) {
         self.shared.say(message);
-    }
-
-    /// The selection moved to this JSON pointer.
-    pub fn select(&self, pointer: Option<String>) {
-        self.say(FromEditor::Selection(pointer));
-    }
-
-    /// The cursor of the picture is there; `None` while something else has the focus.
-    pub fn cursor(&self, at: Option<(f64, f64)>) {
-        self.say(FromEditor::Cursor(at));
-    }
-
-    /// The animation was started or stopped, or moved, or plays at another speed. What the windows know already is not said
-    /// again.
-    pub fn transport(&self, transport: Transport) {
-        self.say(FromEditor::Transport(transport));
     }
 
     /// Windows look from there, or by the scene's camera again.

@@ -13,7 +13,7 @@ use crate::files::Options;
 use crate::preview::keys::TRY_NOW;
 use crate::preview::wire::connection::{HangUp, Wire};
 use crate::preview::wire::frame;
-use crate::preview::wire::message::{FromEditor, Meaning, OfTheLink, ToEditor};
+use crate::preview::wire::message::{FromEditor, Gesture, Meaning, OfTheLink, ToEditor};
 use crate::scene::Document;
 use crate::scene::edit::Edit;
 
@@ -259,7 +259,7 @@ impl Outlet {
 
     fn send(&self, message: &ToEditor) {
         let mut end = self.end();
-        if let ToEditor::Camera(camera) = message {
+        if let ToEditor::Gesture(Gesture::Camera(camera)) = message {
             end.looks = camera.is_some().then(|| message.clone());
         }
         end.write(message);
@@ -269,7 +269,7 @@ impl Outlet {
         for message in replies.iter().filter(ToEditor::is_finite) {
             match message {
                 // The talk may have ended first, here and below.
-                ToEditor::Command(name) if name == TRY_NOW => drop(heard.send(Heard::TryNow)),
+                ToEditor::Gesture(Gesture::Command(name)) if name == TRY_NOW => drop(heard.send(Heard::TryNow)),
                 message => self.send(&message),
             }
         }
@@ -321,17 +321,18 @@ mod tests {
     #[test]
     fn an_editor_that_comes_later_hears_where_the_window_looks_from() {
         let outlet = Outlet::default();
+        let camera = Gesture::Camera(Some(Camera::default()));
         for (said, told) in [
-            (Some(ToEditor::Camera(Some(Camera::default()))), Some(ToEditor::Camera(Some(Camera::default())))),
-            (Some(ToEditor::Pointer { x: 1.0, y: 2.0 }), Some(ToEditor::Camera(Some(Camera::default())))),
-            (Some(ToEditor::Camera(None)), None),
+            (camera.clone(), Some(camera.clone())),
+            (Gesture::Pointer { x: 1.0, y: 2.0 }, Some(camera)),
+            (Gesture::Camera(None), None),
         ] {
-            said.iter().for_each(|said| outlet.send(said));
+            outlet.send(&said.clone().into());
             let sent = Sent::default();
             outlet.set(Some(Box::new(sent.clone())));
             let bytes = sent.0.lock().unwrap().clone();
             let heard = frame::read::<ToEditor>(&mut bytes.as_slice(), 1 << 20).unwrap();
-            assert_eq!(heard, told, "{said:?}");
+            assert_eq!(heard, told.map(ToEditor::Gesture), "{said:?}");
             outlet.set(None);
         }
     }

@@ -21,7 +21,7 @@ use super::text::Letters;
 use super::worker::{Event, Ready, Sending};
 use crate::base::error::{Error, Result};
 use crate::preview::Transport as Leading;
-use crate::preview::wire::message::ToEditor;
+use crate::preview::wire::message::{Gesture, ToEditor};
 
 /// The window and all that it shows.
 pub struct App {
@@ -158,12 +158,12 @@ impl App {
     pub(super) fn lead(&self) {
         let State { transport, timeline, .. } = &self.state;
         let time = transport.scene_time(timeline) * timeline.duration;
-        self.reply(ToEditor::Transport(Leading { playing: transport.playing, time, speed: transport.speed }));
+        self.reply(Gesture::Transport(Leading { playing: transport.playing, time, speed: transport.speed }));
     }
 
-    pub(super) fn reply(&self, reply: ToEditor) {
+    pub(super) fn reply(&self, reply: impl Into<ToEditor>) {
         // Nobody listens where a file is followed, or once the editor is gone: the window goes on.
-        let _ = self.replies.send(reply);
+        let _ = self.replies.send(reply.into());
     }
 
     /// Tells the editor how the window is doing, if that has changed.

@@ -9,7 +9,7 @@ use super::text::of_system;
 use super::thin::Thin;
 use super::worker::Event;
 use crate::base::error::Result;
-use crate::preview::wire::message::ToEditor;
+use crate::preview::wire::message::Gesture;
 
 impl App {
     /// Draws the window, if it can be seen. A lost device is replaced, and another drawing requested.
@@ -37,7 +37,7 @@ impl App {
         if self.told_view != self.state.own {
             self.told_view = self.state.own;
             self.hurry.changed(Instant::now());
-            self.reply(ToEditor::Camera(self.state.own_camera()));
+            self.reply(Gesture::Camera(self.state.own_camera()));
         }
         self.tell_drag();
         self.owed.take().into_iter().for_each(|reply| self.reply(reply));

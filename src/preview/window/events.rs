@@ -21,7 +21,7 @@ use crate::base::error::{Error, Result};
 use crate::base::number;
 use crate::preview::keys::TRY_NOW;
 use crate::preview::views;
-use crate::preview::wire::message::ToEditor;
+use crate::preview::wire::message::Gesture;
 
 /// A line of a mouse wheel is one step; a touchpad may give pixels.
 const WHEEL_PX: f64 = 60.0;
@@ -40,19 +40,17 @@ impl App {
     /// A key: the window follows at once, and the editor is told what concerns it too.
     fn key(&mut self, event_loop: &ActiveEventLoop, command: &'static str) {
         if command == "close-panel" && self.mouse.lets_go(&mut self.state) {
-            self.reply(ToEditor::Command("undrag".to_owned()));
+            self.reply(Gesture::Command("undrag".to_owned()));
             return self.redraw();
         }
         self.leading(|app| app.run(event_loop, command));
         match command {
             "mark-point" => self.tell(command, self.state.marked),
             "select-point" => self.tell(command, self.state.pointed()),
-            TRY_NOW => self.reply(ToEditor::Command(command.to_owned())),
-            "next-pass" | "previous-pass" => {
-                self.reply(ToEditor::Command(views::show_pass(self.state.pass.as_deref())))
-            }
+            TRY_NOW => self.reply(Gesture::Command(command.to_owned())),
+            "next-pass" | "previous-pass" => self.reply(Gesture::Command(views::show_pass(self.state.pass.as_deref()))),
             switch => views::setting(switch, &self.state.switches).into_iter().for_each(|setting| {
-                self.reply(ToEditor::Command(setting));
+                self.reply(Gesture::Command(setting));
             }),
         }
     }
@@ -60,8 +58,8 @@ impl App {
     /// Asks the editor to do something with a point of the picture.
     fn tell(&self, command: &str, at: Option<Point>) {
         if let Some(Point { x, y }) = at {
-            self.reply(ToEditor::Pointer { x, y });
-            self.reply(ToEditor::Command(command.to_owned()));
+            self.reply(Gesture::Pointer { x, y });
+            self.reply(Gesture::Command(command.to_owned()));
         }
     }
 
@@ -71,7 +69,7 @@ impl App {
         }
         self.leading(|app| app.mouse.moved(&mut app.state, at));
         if let Some(Point { x, y }) = self.state.pointed() {
-            self.reply(ToEditor::Pointer { x, y });
+            self.reply(Gesture::Pointer { x, y });
         }
         self.pointed();
     }
@@ -102,10 +100,10 @@ impl App {
             Asked::Fit => self.run(event_loop, "zoom-fit"),
             Asked::Band(from, to) => {
                 let corners = [from.x, from.y, to.x, to.y].map(|c| number::text(number::rounded(c, 1))).join(" ");
-                self.reply(ToEditor::Command(format!("band {corners}")));
+                self.reply(Gesture::Command(format!("band {corners}")));
             }
             Asked::Select(at) => self.tell("select-point", Some(at)),
-            Asked::Take(pointer) => self.reply(ToEditor::Command(format!("take {pointer}"))),
+            Asked::Take(pointer) => self.reply(Gesture::Command(format!("take {pointer}"))),
             Asked::Drop(dragged, at) => self.tell(&format!("drop {dragged}"), Some(at)),
         }
         self.pointed();

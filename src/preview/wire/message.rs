@@ -9,6 +9,7 @@ use crate::base::problem::Problem;
 use crate::files::originals::Original;
 use crate::layers::space::camera::Camera;
 use crate::preview::Transport;
+use crate::preview::views;
 use crate::scene::edit::Edit;
 
 /// The most characters of a text from a window that are shown.
@@ -125,19 +126,8 @@ pub enum ToEditor {
         /// One line for the editor's status; empty if all is well.
         notice: String,
     },
-    /// The pointer, in pixels of the picture.
-    Pointer {
-        /// From the left edge.
-        x: f64,
-        /// From the top edge.
-        y: f64,
-    },
-    /// The camera that the window looks through, where it is not the scene's.
-    Camera(Option<Camera>),
-    /// The animation was started or stopped in the window, or moved.
-    Transport(Transport),
-    /// A request by command name.
-    Command(String),
+    /// See there: the link passes it on as it is.
+    Gesture(Gesture),
     /// A window on another machine requests a piece of a file that [`FromEditor::Images`] announced.
     Want {
         /// SHA-256 of the file, in hexadecimal.
@@ -154,6 +144,25 @@ pub enum ToEditor {
         /// The change.
         patch: Edit,
     },
+}
+
+/// What the person at a window does that whoever edits is to hear of.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Gesture {
+    /// The pointer, in pixels of the picture.
+    Pointer {
+        /// From the left edge.
+        x: f64,
+        /// From the top edge.
+        y: f64,
+    },
+    /// The camera that the window looks through, where it is not the scene's.
+    Camera(Option<Camera>),
+    /// The animation was started or stopped in the window, or moved.
+    Transport(Transport),
+    /// A request by command name.
+    Command(String),
 }
 
 /// What a message of the editor is to one who follows it.
@@ -237,10 +246,10 @@ impl ToEditor {
             ToEditor::Report { fps, adapter, notice } => {
                 ToEditor::Report { fps, adapter: line(adapter), notice: line(notice) }
             }
-            ToEditor::Command(name) => ToEditor::Command(line(name)),
+            ToEditor::Gesture(Gesture::Command(name)) => Gesture::Command(line(name)).into(),
             // Numbers alone, or what the link answers.
-            ToEditor::Ack { .. } | ToEditor::Pointer { .. } | ToEditor::Camera(_) | ToEditor::Transport(_) => self,
-            ToEditor::Hello { .. } | ToEditor::WantScene | ToEditor::Want { .. } => self,
+            ToEditor::Gesture(Gesture::Pointer { .. } | Gesture::Camera(_) | Gesture::Transport(_)) => self,
+            ToEditor::Hello { .. } | ToEditor::Ack { .. } | ToEditor::WantScene | ToEditor::Want { .. } => self,
             ToEditor::Alive | ToEditor::Edit { .. } => self,
         }
     }
@@ -250,14 +259,37 @@ impl ToEditor {
         match self {
             ToEditor::Ack { synth_ms, .. } => synth_ms.is_finite(),
             ToEditor::Report { fps, .. } => fps.is_finite(),
-            ToEditor::Pointer { x, y } => x.is_finite() && y.is_finite(),
-            ToEditor::Camera(None) => true,
-            ToEditor::Camera(Some(Camera { position, target, up, fov, .. })) => {
+            ToEditor::Gesture(gesture) => gesture.is_finite(),
+            ToEditor::Hello { .. } | ToEditor::WantScene | ToEditor::Want { .. } => true,
+            ToEditor::Alive | ToEditor::Edit { .. } => true,
+        }
+    }
+}
+
+impl From<Gesture> for ToEditor {
+    fn from(gesture: Gesture) -> ToEditor {
+        ToEditor::Gesture(gesture)
+    }
+}
+
+impl Gesture {
+    fn is_finite(&self) -> bool {
+        match self {
+            Gesture::Pointer { x, y } => x.is_finite() && y.is_finite(),
+            Gesture::Camera(None) | Gesture::Command(_) => true,
+            Gesture::Camera(Some(Camera { position, target, up, fov, .. })) => {
                 [position, target, up].into_iter().flatten().chain([fov]).all(|number| number.is_finite())
             }
-            ToEditor::Transport(transport) => transport.time.is_finite() && transport.speed.is_finite(),
-            ToEditor::Hello { .. } | ToEditor::WantScene | ToEditor::Command(_) => true,
-            ToEditor::Want { .. } | ToEditor::Alive | ToEditor::Edit { .. } => true,
+            Gesture::Transport(transport) => transport.time.is_finite() && transport.speed.is_finite(),
+        }
+    }
+
+    /// What the other windows are told, so that they do the same.
+    pub fn echo(&self) -> Option<FromEditor> {
+        match self {
+            Gesture::Transport(transport) => Some(FromEditor::Transport(*transport)),
+            Gesture::Command(name) => views::is_for_all(name).then(|| FromEditor::View(name.clone())),
+            Gesture::Pointer { .. } | Gesture::Camera(_) => None,
         }
     }
 }

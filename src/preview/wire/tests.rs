@@ -65,8 +65,8 @@ fn every_message_comes_back_as_it_was_sent() {
         ToEditor::Ack { revision: 9, synth_ms: 0.1 },
         ToEditor::WantScene,
         ToEditor::Report { fps: 59.94, adapter: "llvmpipe".into(), notice: text.clone() },
-        ToEditor::Pointer { x: -1.5, y: 2.0 },
-        ToEditor::Command(text),
+        Gesture::Pointer { x: -1.5, y: 2.0 }.into(),
+        Gesture::Command(text).into(),
         ToEditor::Want { hash: "00ff".into(), offset: 1 << 40 },
         ToEditor::Alive,
         ToEditor::Edit { revision: 1, patch: patch() },
@@ -111,7 +111,7 @@ fn what_is_wrong_is_refused_with_a_reason() {
 
 #[test]
 fn a_message_cut_anywhere_is_an_error_and_never_a_message() {
-    let whole = bytes(&ToEditor::Pointer { x: 1.0, y: 2.0 });
+    let whole = bytes(&ToEditor::from(Gesture::Pointer { x: 1.0, y: 2.0 }));
     for len in 1..whole.len() {
         let error = read::<ToEditor>(&mut &whole[..len]).expect_err("cut").to_string();
         assert!(error.contains("in the middle"), "{len}: {error}");

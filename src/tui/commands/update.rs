@@ -12,7 +12,7 @@ use ratatui::layout::Position;
 
 use super::{conflicts, picture, piping, tutor};
 use crate::preview::editor::{self, Asked};
-use crate::preview::wire::message::ToEditor;
+use crate::preview::wire::message::{Gesture, ToEditor};
 use crate::tui::commands;
 use crate::tui::document::tree;
 use crate::tui::keys::Meaning;
@@ -76,23 +76,21 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
 }
 
 /// Handles messages of windows and scripts.
-fn hear(state: &mut State, said: editor::Event) {
-    match said {
-        editor::Event::Said(ToEditor::Pointer { x, y }) => state.outside.pointer = Some((x, y)),
-        editor::Event::Said(ToEditor::Camera(camera)) => state.outside.camera = camera,
-        editor::Event::Said(ToEditor::Transport(transport)) => state.follow(transport),
-        editor::Event::Said(ToEditor::Command(name)) => run_of_window(state, &name),
+fn hear(state: &mut State, event: editor::Event) {
+    match event {
+        editor::Event::Said(ToEditor::Gesture(gesture)) => follow_window(state, gesture),
         editor::Event::Edit(asked) => answer(state, asked),
-        // The loop on a screen asks for the status after every event.
-        editor::Event::Status | editor::Event::Said(ToEditor::Ack { .. } | ToEditor::Report { .. }) => {}
-        // The link answers these itself.
-        editor::Event::Said(
-            ToEditor::Hello { .. }
-            | ToEditor::WantScene
-            | ToEditor::Want { .. }
-            | ToEditor::Alive
-            | ToEditor::Edit { .. },
-        ) => {}
+        // The link has heard it. The loop on a screen asks for the status after every event.
+        editor::Event::Said(_) | editor::Event::Status => {}
+    }
+}
+
+fn follow_window(state: &mut State, gesture: Gesture) {
+    match gesture {
+        Gesture::Pointer { x, y } => state.outside.pointer = Some((x, y)),
+        Gesture::Camera(camera) => state.outside.camera = camera,
+        Gesture::Transport(transport) => state.follow(transport),
+        Gesture::Command(name) => run_of_window(state, &name),
     }
 }
 

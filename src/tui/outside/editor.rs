@@ -14,6 +14,7 @@ use crate::files::lines::Log;
 use crate::files::materials::Watched;
 use crate::files::watch::Watch;
 use crate::preview::editor::{self, Preview};
+use crate::preview::wire::message::FromEditor;
 use crate::scene::{FRAME, Scene};
 use crate::tui::commands;
 use crate::tui::commands::update::update;
@@ -255,7 +256,8 @@ impl Editor {
             self.perform(effect);
         }
         let in_picture = self.state.cursor.focus == Pane::Picture;
-        self.preview.cursor(in_picture.then_some(self.state.picture.cursor).map(|at| (at.x, at.y)));
+        let cursor = in_picture.then_some(self.state.picture.cursor).map(|at| (at.x, at.y));
+        self.preview.say(FromEditor::Cursor(cursor));
     }
 
     /// Begins the script of a file.

@@ -13,6 +13,7 @@ use crate::files::session::Mode;
 use crate::files::{clips, lines, paths, picture, write};
 use crate::ops;
 use crate::preview::views;
+use crate::preview::wire::message::FromEditor;
 use crate::scene::Document;
 use crate::tui::document::open_scene::OpenScene;
 use crate::tui::events::{Effect, Event};
@@ -31,8 +32,8 @@ impl Editor {
                 self.watch_files();
             }
             Effect::Show => {
-                self.preview.select(Some(self.state.focused()));
-                self.preview.transport(self.state.transport());
+                self.preview.say(FromEditor::Selection(Some(self.state.focused())));
+                self.preview.say(FromEditor::Transport(self.state.transport()));
             }
             Effect::Pass => self.preview.passing(self.state.transport().time),
             Effect::Reload => {

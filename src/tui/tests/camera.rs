@@ -10,7 +10,7 @@ use crate::base::mesh::{Mesh, Vertex};
 use crate::base::problem::Problem;
 use crate::layers::parts::materials::Materials;
 use crate::layers::space::camera::Camera;
-use crate::preview::wire::message::ToEditor;
+use crate::preview::wire::message::Gesture;
 use crate::render;
 use crate::scene::check as scene;
 use crate::tui::commands::update::update;
@@ -44,14 +44,14 @@ fn the_windows_camera_is_taken_and_what_is_lost_is_told() {
     let told = run(&mut state, "camera take");
     assert!(told.starts_with("there is no window"), "{told}");
     state.outside.window = "window".into();
-    update(&mut state, said(ToEditor::Camera(Some(own()))));
+    update(&mut state, said(Gesture::Camera(Some(own()))));
     let told = run(&mut state, "camera take");
     assert!(told.contains("without its turn"), "{told}");
     let taken = json!({ "position": [1, 2, 3], "target": [0, 0.5, 0], "fov": 50 });
     assert_eq!(camera(&state), taken);
     press(&mut state, "u");
     assert_eq!(camera(&state), json!({ "turn": 90, "fov": 30 }), "one step of undo");
-    update(&mut state, said(ToEditor::Camera(None)));
+    update(&mut state, said(Gesture::Camera(None)));
     assert!(run(&mut state, "camera take").starts_with("the window moved last shows"), "it is back at the scene's");
 }
 
@@ -59,12 +59,12 @@ fn the_windows_camera_is_taken_and_what_is_lost_is_told() {
 fn a_key_shows_at_its_time_what_the_window_shows() {
     let mut state = state_of(SCENE);
     state.play.time = 0.5;
-    update(&mut state, said(ToEditor::Camera(Some(own()))));
+    update(&mut state, said(Gesture::Camera(Some(own()))));
     assert!(run(&mut state, "camera key").contains("stands still"));
     let ([position, target, _], fov) = state.document().scene().camera.clone().unwrap().view(0.5);
     assert!((position - DVec3::new(1.0, 2.0, 3.0)).length() < 1e-5, "the turn is not done twice: {position}");
     assert_eq!((target, fov), (DVec3::new(0.0, 0.5, 0.0), 50.0));
-    update(&mut state, said(ToEditor::Camera(None)));
+    update(&mut state, said(Gesture::Camera(None)));
     state.play.time = 0.25;
     run(&mut state, "camera key");
     run(&mut state, "camera key");
@@ -184,7 +184,7 @@ fn other_keys_show_what_they_showed() {
     let views = |state: &State| [0.2, 0.7].map(|t| state.document().scene().camera.as_ref().unwrap().view(t));
     let before = views(&state);
     state.outside.window = "window".into();
-    update(&mut state, said(ToEditor::Camera(Some(own()))));
+    update(&mut state, said(Gesture::Camera(Some(own()))));
     run(&mut state, "time 0.5");
     assert_eq!(run(&mut state, "camera key"), "the camera has a key at 0.5");
     assert_eq!(camera(&state)["keys"].as_array().map(Vec::len), Some(3));

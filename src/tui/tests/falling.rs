@@ -8,7 +8,7 @@ use super::screens::screen;
 use super::support::{at, paste, press, said, said_last, state_of};
 use crate::layers::space::camera::Camera;
 use crate::layers::space::eye::Eye;
-use crate::preview::wire::message::ToEditor;
+use crate::preview::wire::message::Gesture;
 use crate::tui::commands::obey;
 use crate::tui::commands::update::update;
 use crate::tui::events::Effect;
@@ -393,19 +393,19 @@ fn the_cursor_goes_from_node_to_node() {
 fn a_window_drops_a_landing_where_it_sees_the_pool() {
     for own in [None, Some(Camera { position: [3.0, 2.0, 3.0], ..camera() })] {
         let mut state = falling(json!({}));
-        update(&mut state, said(ToEditor::Camera(own.clone())));
-        update(&mut state, said(ToEditor::Pointer { x: 230.5, y: 260.0 }));
-        update(&mut state, said(ToEditor::Command("drop /layers/0/lip/2".into())));
+        update(&mut state, said(Gesture::Camera(own.clone())));
+        update(&mut state, said(Gesture::Pointer { x: 230.5, y: 260.0 }));
+        update(&mut state, said(Gesture::Command("drop /layers/0/lip/2".into())));
         let wanted = eye(&own.unwrap_or_else(camera)).ray_in_world(DVec2::new(230.5, 260.0)).meets_level(0.0).unwrap();
         assert!((landing(&state, 2) - wanted).length() < 1e-5, "{} {wanted}", landing(&state, 2));
         assert_eq!(state.cursor.row, 2);
         replays(&state);
         press(&mut state, "u");
         assert_eq!(state.document().json(), falling(json!({})).document().json());
-        update(&mut state, said(ToEditor::Command("drop /layers/0/look".into())));
+        update(&mut state, said(Gesture::Command("drop /layers/0/look".into())));
         assert!(said_last(&state).0);
         press(&mut state, "i");
-        update(&mut state, said(ToEditor::Command("drop /layers/0/lip/2".into())));
+        update(&mut state, said(Gesture::Command("drop /layers/0/lip/2".into())));
         assert!(said_last(&state).1.contains("something is being typed"));
     }
 }

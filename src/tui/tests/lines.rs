@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use super::support::{press, replayed, said, state};
 use super::{check, motion, zone};
-use crate::preview::wire::message::ToEditor;
+use crate::preview::wire::message::Gesture;
 use crate::tui::commands::update::update;
 use crate::tui::commands::{self, obey};
 use crate::tui::state::{Mode, Pane, State};
@@ -115,7 +115,7 @@ fn a_path_is_one_word_or_in_quotes_and_no_program() {
 #[test]
 pub fn the_pointer_of_a_window_is_kept_as_a_place() {
     let mut state = state();
-    update(&mut state, said(ToEditor::Pointer { x: 12.5, y: 13.0 }));
+    update(&mut state, said(Gesture::Pointer { x: 12.5, y: 13.0 }));
     press(&mut state, &motion("M"));
     assert_eq!(state.document().json().pointer(&zone("/motion/0/at")), Some(&json!([12.5, 13])));
     assert_eq!(replayed(&state).document().json(), state.document().json());

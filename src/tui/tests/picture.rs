@@ -19,7 +19,7 @@ use crate::base::mesh::{Mesh, Vertex};
 use crate::layers::parts::marks::View;
 use crate::layers::parts::materials::Materials;
 use crate::layers::parts::readout::{Entry, Value};
-use crate::preview::wire::message::ToEditor;
+use crate::preview::wire::message::Gesture;
 use crate::tui::commands::update::update;
 use crate::tui::events::{Effect, Event};
 use crate::tui::graphics::{Protocol, TerminalPicture, Wanted};
@@ -398,7 +398,7 @@ fn overlays_that_are_switched_on_are_in_the_picture() {
             Protocol::Blocks => assert!(before.0 == arrows.0 && before.1 != arrows.1),
             _ => assert!(before.0 != arrows.0),
         }
-        update(&mut state, said(ToEditor::Command("view-field off".into())));
+        update(&mut state, said(Gesture::Command("view-field off".into())));
         see(&mut state);
         assert!(shown(&state) == before, "a window has switched it off: {protocol:?}");
     }

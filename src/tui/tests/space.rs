@@ -8,7 +8,7 @@ use serde_json::json;
 use super::support::{at, press, said, said_last, state_of};
 use crate::base::mesh::{Mesh, Vertex};
 use crate::layers::parts::materials::Materials;
-use crate::preview::wire::message::ToEditor;
+use crate::preview::wire::message::Gesture;
 use crate::render;
 use crate::tui::commands::update::update;
 use crate::tui::state::State;
@@ -68,8 +68,8 @@ fn a_click_on_a_mesh_goes_to_its_layer() {
     state.picture.size = Some((1280, 720));
     for (x, expected) in [(640.0, "/layers/1"), (20.0, "/layers/0")] {
         run(&mut state, "go layers.0");
-        update(&mut state, said(ToEditor::Pointer { x, y: 400.0 }));
-        update(&mut state, said(ToEditor::Command("select-point".into())));
+        update(&mut state, said(Gesture::Pointer { x, y: 400.0 }));
+        update(&mut state, said(Gesture::Command("select-point".into())));
         assert!(state.focused().starts_with(expected), "{}: {:?}", state.focused(), state.message);
     }
 }

@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use serde_json::Value;
 
 use crate::preview::editor;
-use crate::preview::wire::message::ToEditor;
+use crate::preview::wire::message::Gesture;
 use crate::tui::commands::obey;
 use crate::tui::commands::update::update;
 use crate::tui::document::open_scene::OpenScene;
@@ -41,8 +41,8 @@ pub const SCENE: &str = r#"{
 }"#;
 
 /// A message of a window.
-pub fn said(message: ToEditor) -> Event {
-    Event::Window(editor::Event::Said(message))
+pub fn said(message: Gesture) -> Event {
+    Event::Window(editor::Event::Said(message.into()))
 }
 
 /// The editor with [`SCENE`] open on a terminal of 80 x 24. Edits stay in memory.

@@ -11,7 +11,7 @@ use crate::base::maths::tan;
 use crate::files::materials::{self, Cache};
 use crate::layers::parts::marks::Shape;
 use crate::layers::space::camera::Camera;
-use crate::preview::wire::message::ToEditor;
+use crate::preview::wire::message::Gesture;
 use crate::render::{self, cpu};
 use crate::tui::commands::update::update;
 use crate::tui::document::open_scene::OpenScene;
@@ -103,7 +103,7 @@ fn the_eye_goes_to_a_view_and_a_view_comes_to_the_eye() {
     assert_eq!((camera.position, camera.target, camera.fov), ([0.0, 0.0, 4.0], [0.0, 0.0, 0.0], 40.0));
     assert!(run(&mut state, "views go b").0.contains("there is no view \"b\""));
     let own = Camera { position: [2.0, 1.0, 0.0], target: [0.0, 1.0, 0.0], fov: 50.0, ..Camera::default() };
-    update(&mut state, said(ToEditor::Camera(Some(own))));
+    update(&mut state, said(Gesture::Camera(Some(own))));
     assert_eq!(run(&mut state, "views take a").0, "a is seen from here now");
     let camera = at(&state, "/layers/0/surface/views/5/camera");
     assert_eq!(camera, json!({ "position": [1, 0, 0], "target": [0, 0, 0], "up": [0, 1, 0], "fov": 50 }));

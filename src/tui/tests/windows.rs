@@ -5,7 +5,7 @@ use serde_json::json;
 use super::support::{press, said, state};
 use super::{motion, zone};
 use crate::preview::Transport;
-use crate::preview::wire::message::ToEditor;
+use crate::preview::wire::message::Gesture;
 use crate::tui::commands::update::update;
 use crate::tui::events::{Effect, Event};
 use crate::tui::state::State;
@@ -17,7 +17,7 @@ fn pass(state: &mut State, seconds: f64) -> Vec<Effect> {
 #[test]
 fn a_window_leads_and_is_not_told_what_it_said() {
     let mut state = state();
-    let told = update(&mut state, said(ToEditor::Transport(Transport { playing: true, time: 0.5, speed: 0.5 })));
+    let told = update(&mut state, said(Gesture::Transport(Transport { playing: true, time: 0.5, speed: 0.5 })));
     assert!(matches!(told[..], [Effect::Pass]), "{told:?}");
     assert_eq!((state.play.playing, state.play.time, state.play.speed), (true, 0.25, 0.5));
     let told = pass(&mut state, 1.0);
@@ -26,7 +26,7 @@ fn a_window_leads_and_is_not_told_what_it_said() {
     let told = press(&mut state, "P");
     assert!(matches!(told[..], [Effect::Show]), "{told:?}");
     assert_eq!(state.transport(), Transport { playing: false, time: 1.0, speed: 0.5 });
-    update(&mut state, said(ToEditor::Transport(Transport { playing: false, time: f64::NAN, speed: 1.0 })));
+    update(&mut state, said(Gesture::Transport(Transport { playing: false, time: f64::NAN, speed: 1.0 })));
     assert_eq!(state.play.time, 0.5);
 }
 
@@ -61,8 +61,8 @@ fn a_point_marked_in_a_window_moves_the_cursor_only() {
     let mut state = state();
     press(&mut state, &motion(""));
     let before = state.document().json().clone();
-    update(&mut state, said(ToEditor::Pointer { x: 12.5, y: 13.25 }));
-    update(&mut state, said(ToEditor::Command("mark-point".into())));
+    update(&mut state, said(Gesture::Pointer { x: 12.5, y: 13.25 }));
+    update(&mut state, said(Gesture::Command("mark-point".into())));
     assert_eq!(state.picture.cursor, (12.5, 13.25).into());
     assert_eq!(state.document().json(), &before);
     assert!(state.message.as_ref().is_some_and(|said| said.text.starts_with("marked 12.5, 13.25")));
@@ -79,8 +79,8 @@ fn what_is_selected_in_a_window_is_shown() {
     ] {
         let mut state = state();
         press(&mut state, &keys);
-        update(&mut state, said(ToEditor::Pointer { x: at.0, y: at.1 }));
-        update(&mut state, said(ToEditor::Command("select-point".into())));
+        update(&mut state, said(Gesture::Pointer { x: at.0, y: at.1 }));
+        update(&mut state, said(Gesture::Command("select-point".into())));
         assert_eq!((&state.cursor.node, state.cursor.row), (&node, row), "{at:?} {keys}");
     }
 }
@@ -91,8 +91,8 @@ fn what_a_window_drags_is_one_step_of_undo_and_one_line() {
     let before = state.document().json().clone();
     let at = zone("/motion/0/at");
     let say = |state: &mut State, verb: &str, (x, y): (f64, f64)| {
-        update(state, said(ToEditor::Pointer { x, y }));
-        update(state, said(ToEditor::Command(format!("{verb} {at}"))));
+        update(state, said(Gesture::Pointer { x, y }));
+        update(state, said(Gesture::Command(format!("{verb} {at}"))));
         state.document().json().pointer(&at).cloned().unwrap()
     };
     assert_eq!(say(&mut state, "drag", (12.5, 13.0)), json!([12.5, 13]));
@@ -102,7 +102,7 @@ fn what_a_window_drags_is_one_step_of_undo_and_one_line() {
     let line = state.memory.recorder.log().last().cloned().unwrap_or_default();
     assert!(line.starts_with("set ") && line.ends_with(".at=[14.5,15.5]"), "{line}");
     say(&mut state, "drag", (1.0, 1.0));
-    update(&mut state, said(ToEditor::Command("undrag".into())));
+    update(&mut state, said(Gesture::Command("undrag".into())));
     assert_eq!(state.document().json().pointer(&at), Some(&json!([14.5, 15.5])), "as if it had not been");
     press(&mut state, "u");
     assert_eq!(state.document().json(), &before);
@@ -120,7 +120,7 @@ fn a_box_that_a_window_draws_selects_the_points_in_it() {
     ] {
         let mut state = state();
         press(&mut state, &keys);
-        update(&mut state, said(ToEditor::Command(format!("band {corners}"))));
+        update(&mut state, said(Gesture::Command(format!("band {corners}"))));
         let selected = state.cursor.selects().then(|| state.cursor.rows().into_iter().collect::<Vec<_>>());
         assert_eq!(selected, rows, "{keys} {corners}: {:?}", state.message);
     }
@@ -136,7 +136,7 @@ fn the_pointer_goes_into_the_entry() {
         ("l l l l i M Enter", at("jump"), json!([0, -6.75])),
     ] {
         let mut state = state();
-        update(&mut state, said(ToEditor::Pointer { x: 12.5, y: 13.25 }));
+        update(&mut state, said(Gesture::Pointer { x: 12.5, y: 13.25 }));
         press(&mut state, &motion(keys));
         assert_eq!(state.document().json().pointer(&pointer), Some(&expected), "{keys}");
     }
@@ -154,7 +154,7 @@ fn the_pointer_goes_into_the_column_of_the_cursor() {
         ("l l l l l l M", json!([20, 20]), json!([-7.5, -6.75])),
     ] {
         let mut state = state();
-        update(&mut state, said(ToEditor::Pointer { x: 12.5, y: 13.25 }));
+        update(&mut state, said(Gesture::Pointer { x: 12.5, y: 13.25 }));
         press(&mut state, &motion(keys));
         let read = |field: &str| state.document().json().pointer(&at(field)).cloned();
         assert_eq!((read("at"), read("jump")), (Some(moved), Some(aimed)), "{keys}");
@@ -164,7 +164,7 @@ fn the_pointer_goes_into_the_column_of_the_cursor() {
 #[test]
 fn a_name_takes_a_capital_m() {
     let mut state = state();
-    update(&mut state, said(ToEditor::Pointer { x: 12.5, y: 13.25 }));
+    update(&mut state, said(Gesture::Pointer { x: 12.5, y: 13.25 }));
     press(&mut state, "/ \"name\" Enter i Ctrl-u \"Mouth\" Enter");
     let names = state.document().json().to_string();
     assert!(names.contains("\"Mouth\""), "{names}");
@@ -185,7 +185,7 @@ fn a_pass_is_the_same_here_and_in_the_windows() {
         assert_eq!(shown(&state), here, "{typed}");
     }
     for (told, here) in [("pass depth:face", "depth:face"), ("pass uv:gone", "depth:face"), ("pass color", "")] {
-        let effects = update(&mut state, said(ToEditor::Command(told.into())));
+        let effects = update(&mut state, said(Gesture::Command(told.into())));
         assert!(!effects.iter().any(|effect| matches!(effect, Effect::View(_))), "{told} is not told again");
         assert_eq!(shown(&state), here, "{told}");
     }
