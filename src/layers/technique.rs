@@ -26,6 +26,7 @@ use super::parts::shots::{Laid, Laying, Lying};
 use super::parts::sketch::Sketch;
 use super::parts::twin::Twin;
 use super::ready::{Making, Prepared, Ready, Whole};
+use super::shapes::node::Node;
 use super::shapes::shape::Shape;
 use super::space::eye::Ray;
 use super::starts::{Comparison, Preset, Starts, Styles, Template};
@@ -107,6 +108,12 @@ pub trait Technique: Any + Send + Sync {
 
     /// Looks up the shapes of the scene that the layer names.
     fn resolve(&mut self, _shapes: &BTreeMap<String, Shape>) {}
+
+    /// What holds the picture still along the shape of this name, or takes it from there to another path, for what is at `path`; and
+    /// where that is to be written. `None` if nothing there moves so.
+    fn along(&self, _path: &str, _shape: (&str, &[Node]), _to: Option<&[Node]>) -> Option<(String, Value)> {
+        None
+    }
 
     /// Whether the thing at `path` can be left out by itself.
     fn can_mute(&self, _path: &str) -> bool {

@@ -18,6 +18,7 @@ use crate::files::{Options, materials};
 use crate::preview::editor::script;
 use crate::scene::field::{self, Kind};
 use crate::scene::presets::Applied;
+use crate::scene::schema::{Body, Place};
 use crate::scene::{Document, Edit, address};
 
 /// Set values in a scene
@@ -27,7 +28,7 @@ pub struct Args {
     scene: PathBuf,
     /// What to set, for example layers.face.zones."left eye".feather=4; a value that is not JSON is text; null removes
     /// something optional; PATH*=2, +=, -= and /= change a number, which may be computed (PATH=v*2, v the old one); * stands
-    /// for all, as in layers.*.zones.*.speed=i/n
+    /// for all, as in layers.*.zones.*.speed=i/n; a word alone chooses a kind, as in layers.face.zones.lid.position=sine
     #[arg(required = true, value_name = "PATH=VALUE")]
     settings: Vec<String>,
     #[command(flatten)]
@@ -48,7 +49,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let lost = RefCell::default();
     let options = args.reading.options()?;
     let make = |document: &Document| {
-        let set = edit(document, &args.settings, &args.scene)?;
+        let set = edit(document, &args.settings, (&args.scene, ""))?;
         let remarks = set.remarks(document, &args.scene, &options);
         lost.replace(remarks);
         Ok(set.edit)
@@ -179,13 +180,13 @@ impl Set {
 }
 
 /// The edit that applies all of `settings` (`PATH=VALUE`), each to the result of those before it. One that is only right after
-/// another waits for that.
-pub fn edit(document: &Document, settings: &[String], scene: &Path) -> Result<Set> {
+/// another waits for that. A path that begins with a dot is looked for around the place `here` of the scene.
+pub fn edit(document: &Document, settings: &[String], (scene, here): (&Path, &str)) -> Result<Set> {
     let mut all = Set { edit: Edit::default(), after: document.clone(), lost: Vec::new(), places: 0 };
     let mut waiting: Vec<&String> = settings.iter().collect();
     while !waiting.is_empty() {
         let (before, mut refusal) = (waiting.len(), None);
-        waiting.retain(|setting| match one(&all.after, setting, scene) {
+        waiting.retain(|setting| match one(&all.after, setting, (scene, here)) {
             Ok(set) => {
                 all.after = set.after;
                 all.edit = Edit::all([std::mem::take(&mut all.edit), set.edit]);
@@ -206,9 +207,10 @@ pub fn edit(document: &Document, settings: &[String], scene: &Path) -> Result<Se
 }
 
 /// The document after one setting, and what that did to it.
-fn one(document: &Document, setting: &str, scene: &Path) -> Result<Set> {
+fn one(document: &Document, setting: &str, (scene, here): (&Path, &str)) -> Result<Set> {
     let mut all = Set { edit: Edit::default(), after: document.clone(), lost: Vec::new(), places: 0 };
-    let setting = Setting::read(document, setting)?;
+    let whole = around(document, here, setting)?;
+    let setting = Setting::read(document, &whole)?;
     let pointers = address::resolve_all(document, setting.path)?;
     // Places that are written do not touch one another; others may begin what they share.
     let written = |pointer: &String| Pointer(pointer).parent().is_some_and(|at| document.json().pointer(at).is_some());
@@ -217,6 +219,7 @@ fn one(document: &Document, setting: &str, scene: &Path) -> Result<Set> {
     for (k, some) in pointers.chunks(at_once).enumerate() {
         let mut edits = Vec::new();
         for (i, pointer) in some.iter().enumerate() {
+            let pointer = &setting.meant(&all.after, pointer);
             let value = setting.value(&all.after, pointer, (k * at_once + i, all.places))?;
             let (edit, lost) = Edit::set_told(&all.after, pointer, value);
             all.lost.extend(lost.map(|lost| format!("{}: {lost}", address::address(&all.after, pointer))));
@@ -265,6 +268,16 @@ impl<'a> Setting<'a> {
         })
     }
 
+    /// The place that it sets: of something that there are several kinds of, a word is the kind.
+    fn meant(&self, document: &Document, pointer: &str) -> String {
+        let place = Place::of(document.json(), pointer).map(|place| place.shape);
+        let kind = place.zip(self.value.as_str()).and_then(|(shape, word)| match shape.body() {
+            Body::Tagged(tag) => shape.variant(word).map(|_| Pointer(pointer).join(tag)),
+            _ => None,
+        });
+        kind.unwrap_or_else(|| pointer.to_owned())
+    }
+
     /// The value for one of its places, the `i`th of `n`.
     fn value(&self, document: &Document, pointer: &str, (i, n): (usize, usize)) -> Result<Value> {
         let kind = field::field(document, pointer).map(|field| field.kind);
@@ -283,6 +296,16 @@ impl<'a> Setting<'a> {
             _ => Ok(self.value.clone()),
         }
     }
+}
+
+/// A setting with a whole path: one that begins with a dot is looked for around the place `here`.
+///
+/// # Errors
+/// If there is no such thing around it.
+pub fn around(document: &Document, here: &str, setting: &str) -> Result<String> {
+    let path = &setting[..equals(setting).unwrap_or(setting.len())];
+    let path = path.trim_end_matches(['+', '-', '*', '/']);
+    Ok(address::around(document, here, path)? + &setting[path.len()..])
 }
 
 /// Splits a line of settings: a space ends a setting if the `PATH=` of another follows. So a text with spaces needs no
@@ -382,7 +405,7 @@ mod tests {
     fn the_order_of_settings_does_not_matter_where_one_asks_for_another() {
         let document = Start::default().picture("cat", "cat.png", (9, 9)).document().unwrap();
         let pair = ["layers.cat.color=#203040", "layers.cat.kind=fill"].map(str::to_owned);
-        let edited = |settings: &[String]| edit(&document, settings, Path::new("s")).map(|set| set.edit);
+        let edited = |settings: &[String]| edit(&document, settings, (Path::new("s"), "")).map(|set| set.edit);
         for settings in [pair.to_vec(), pair.iter().rev().cloned().collect()] {
             let after = document.apply(&edited(&settings).unwrap()).unwrap();
             assert_eq!(after.json()["layers"][0], json!({ "kind": "fill", "name": "cat", "color": "#203040" }));
@@ -390,6 +413,28 @@ mod tests {
         let wrong = ["layers.cat.colour=3", "title=a"].map(str::to_owned);
         let wrong = edited(&wrong).map(drop).unwrap_err().to_string();
         assert!(wrong.contains("\"colour\""), "what is wrong is told: {wrong}");
+    }
+
+    #[test]
+    fn a_word_chooses_the_kind_of_what_has_several() {
+        let document = Start::default().picture("cat", "cat.png", (9, 9)).document().unwrap();
+        for (setting, pointer, expected) in [
+            (".position=sine", "/position", json!({ "function": "sine" })),
+            (".interpolation=rigid", "/interpolation", json!({ "method": "rigid" })),
+            (".outline=ellipse", "/outline/radii", json!([4.5, 4.5])),
+            (".motion.-=still-border", "/motion/0", json!({ "tool": "still-border", "spacing": 8 })),
+            (".feather+=2", "/feather", json!(2)),
+            (".timeline.fps=25", "/feather", json!(null)),
+        ] {
+            let set = edit(&document, &[setting.to_owned()], (Path::new("s"), "/layers/0/zones/0/outline/x"));
+            let after = document.apply(&set.unwrap_or_else(|why| panic!("{setting}: {why}")).edit).unwrap();
+            let found = after.json()["layers"][0]["zones"][0].pointer(pointer).cloned().unwrap_or_default();
+            assert_eq!(found, expected, "{setting}");
+        }
+        let wrong = |setting: &str| edit(&document, &[setting.to_owned()], (Path::new("s"), "")).map(drop);
+        let nowhere = wrong(".feather=1").unwrap_err().to_string();
+        assert!(nowhere.contains("there is no such thing around the cursor"), "{nowhere}");
+        wrong("layers.cat.zones.all.position=zine").unwrap_err();
     }
 
     #[test]

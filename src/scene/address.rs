@@ -24,6 +24,24 @@ pub fn resolve(document: &Document, address: &str) -> Result<String> {
     follow(document, address, split(address)?)
 }
 
+/// The whole of an address that begins with a dot: `.feather` is the nearest feather around the place at `here`, looked for from
+/// inside out. Any other stays as it is.
+///
+/// # Errors
+/// If there is no such thing around the place.
+pub fn around(document: &Document, here: &str, address: &str) -> Result<String> {
+    let Some(way) = address.strip_prefix('.') else { return Ok(address.to_owned()) };
+    let first = split(way)?.into_iter().next();
+    let has = |at: &&str| {
+        let place = Place::of(document.json(), at).filter(|place| !matches!(place.shape.body(), Body::Map(_)));
+        place.zip(first.as_ref()).is_some_and(|(place, first)| step(document, address, at, place, first).is_ok())
+    };
+    let found = Pointer(here).upward().find(has).map(|at| self::address(document, at));
+    let near =
+        || Error::at(address, "there is no such thing around the cursor").cure("a whole path begins with no dot");
+    found.map(|at| if at.is_empty() { way.to_owned() } else { format!("{at}.{way}") }).ok_or_else(near)
+}
+
 /// The JSON pointers of all places that an address means in which `*` stands for every item, entry or field; those that
 /// have nothing of the rest of its name are left out.
 ///

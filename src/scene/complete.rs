@@ -1,10 +1,30 @@
 //! Completion of addresses, for people who type them.
 
+use std::collections::BTreeSet;
+
 use serde_json::Value;
 
 use super::field::Kind;
 use super::{Document, address, field, named};
 use crate::base::pointer::Pointer;
+
+/// As [`paths`], where one that begins with a dot is looked for around the place `here`.
+pub fn paths_around(document: &Document, here: &str, typed: &str) -> Vec<String> {
+    let Some(way) = typed.strip_prefix('.') else { return paths(document, typed) };
+    let (parent, _) = way.split_at(last_step(way));
+    let holders: Vec<String> = match parent.strip_suffix('.') {
+        None => Pointer(here).upward().map(|at| address::address(document, at)).collect(),
+        Some(parent) => address::around(document, here, &format!(".{parent}")).into_iter().collect(),
+    };
+    let all = holders.iter().flat_map(|holder| {
+        let whole = |way: &str| if holder.is_empty() { way.to_owned() } else { format!("{holder}.{way}") };
+        let begin = whole("").len();
+        let found = paths(document, &whole(&way[parent.len()..])).into_iter();
+        found.map(move |path| format!(".{parent}{}", &path[begin..]))
+    });
+    let mut seen = BTreeSet::new();
+    all.filter(|path| seen.insert(path.clone())).collect()
+}
 
 /// The paths of the scene that continue `typed` by one name.
 pub fn paths(document: &Document, typed: &str) -> Vec<String> {
@@ -34,7 +54,9 @@ pub fn values(document: &Document, typed: &str) -> Vec<String> {
     let pointer = address::resolve_all(document, path).ok().and_then(|all| all.into_iter().next());
     let kind = pointer.and_then(|pointer| field::field(document, &pointer)).map(|field| field.kind);
     let known: Vec<String> = match kind {
-        Some(Kind::Choice(words)) => words.into_iter().map(|word| word.name.to_owned()).collect(),
+        Some(Kind::Choice(words) | Kind::Tagged { variants: words, .. }) => {
+            words.into_iter().map(|word| word.name.to_owned()).collect()
+        }
         Some(Kind::Reference(list)) => match document.json().get(list) {
             Some(Value::Object(named)) => named.keys().cloned().collect(),
             Some(Value::Array(items)) => items.iter().filter_map(|item| named::name_of(Some(item))).collect(),
@@ -42,7 +64,7 @@ pub fn values(document: &Document, typed: &str) -> Vec<String> {
         },
         Some(Kind::Bool) => vec!["true".into(), "false".into()],
         Some(Kind::Number { .. } | Kind::Numbers(_) | Kind::Text | Kind::List(_) | Kind::Map(_)) => Vec::new(),
-        Some(Kind::Object | Kind::Tagged { .. }) | None => Vec::new(),
+        Some(Kind::Object) | None => Vec::new(),
     };
     known.into_iter().filter(|name| name.starts_with(value)).collect()
 }
@@ -85,5 +107,15 @@ mod tests {
         ] {
             assert_eq!(paths(&document, typed), expected, "{typed}");
         }
+        for (typed, expected) in [
+            (".col", vec![".color"]),
+            (".ti", vec![".title", ".timeline"]),
+            (".timeline.f", vec![".timeline.fps"]),
+            (".nowhere.", vec![]),
+            ("lay", vec!["layers"]),
+        ] {
+            assert_eq!(paths_around(&document, "/layers/1/name", typed), expected, "{typed}");
+        }
+        assert_eq!(values(&document, "layers.light.gradient="), Vec::<String>::new());
     }
 }

@@ -1,6 +1,7 @@
 //! Folding textures (Thorben 2012; Ren, TU Delft 2023): every pixel of a zone owns a sampler that moves along a jump
 //! path through the picture as time passes; thresholds along the path let one part slide over another.
 
+mod along;
 pub mod anchor;
 pub mod anchors;
 pub mod atlas;
@@ -57,6 +58,7 @@ use super::parts::moving::Mover;
 use super::parts::readout::{Curve, ReadOut};
 use super::parts::repeat::Repeat;
 use super::ready::{Making, Prepared, Ready};
+use super::shapes::node::Node;
 use super::shapes::shape::Shape;
 use super::starts::{Starts, Template};
 use super::technique::{Bundle, Checked, Count, Counted, Kind, Technique, Turned};
@@ -151,6 +153,10 @@ impl Technique for PictureLayer {
 
     fn resolve(&mut self, shapes: &BTreeMap<String, Shape>) {
         shared::resolve(self, shapes);
+    }
+
+    fn along(&self, path: &str, shape: (&str, &[Node]), to: Option<&[Node]>) -> Option<(String, Value)> {
+        along::along(self, path, shape, to)
     }
 
     fn can_mute(&self, path: &str) -> bool {

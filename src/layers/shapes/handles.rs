@@ -17,7 +17,7 @@ const THIRD: f64 = 1.0 / 3.0;
 /// What becomes of the handles of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Handles {
-    /// The path goes through smoothly, parallel to the line between its neighbors.
+    /// The path goes through smoothly, parallel to the line between its neighbors, and ends as the circle through the last three.
     Smooth,
     /// The shorter handle is the longer one turned about the node.
     Mirrored,
@@ -69,15 +69,21 @@ fn with_handles(nodes: &[Node], closed: bool, chosen: &BTreeSet<usize>, handles:
         (i, false) => Some(i - 1),
     };
     let at = |i: Option<usize>| i.and_then(|i| nodes.get(i)).map(|node| point(node.at));
+    let beyond = |i: Option<usize>, forward: bool| at(i.and_then(|i| neighbor(i, forward)));
     let made = |(i, node): (usize, &Node)| {
         if !chosen.contains(&i) {
             return node.clone();
         }
         let here = point(node.at);
-        let (before, after) = (at(neighbor(i, false)), at(neighbor(i, true)));
+        let (before, after) = (neighbor(i, false), neighbor(i, true));
         let (back, on) = match handles {
             Handles::None => (Vec2::ZERO, Vec2::ZERO),
-            Handles::Smooth => smooth(here, before, after),
+            Handles::Smooth => match (at(before), at(after)) {
+                (Some(before), Some(after)) => smooth(here, before, after),
+                (None, Some(next)) => (Vec2::ZERO, end(here, next, beyond(after, true))),
+                (Some(next), None) => (end(here, next, beyond(before, false)), Vec2::ZERO),
+                (None, None) => (Vec2::ZERO, Vec2::ZERO),
+            },
             Handles::Mirrored => {
                 let (back, on) = (vector(node.handle_in), vector(node.handle_out));
                 if back.hypot2() > on.hypot2() { (back, -back) } else { (-on, on) }
@@ -88,21 +94,40 @@ fn with_handles(nodes: &[Node], closed: bool, chosen: &BTreeSet<usize>, handles:
     nodes.iter().enumerate().map(made).collect()
 }
 
-/// The handles of a smooth node; at an end only the one that there is a side for.
-fn smooth(here: Point, before: Option<Point>, after: Option<Point>) -> (Vec2, Vec2) {
-    match (before, after) {
-        (Some(before), Some(after)) if before != after => {
-            let along = (after - before).normalize();
-            (along * -(here - before).hypot() * THIRD, along * (after - here).hypot() * THIRD)
+/// The handles of a smooth node between two others.
+fn smooth(here: Point, before: Point, after: Point) -> (Vec2, Vec2) {
+    if before == after {
+        return (Vec2::ZERO, Vec2::ZERO);
+    }
+    let along = (after - before).normalize();
+    (along * -(here - before).hypot() * THIRD, along * (after - here).hypot() * THIRD)
+}
+
+/// The handle of a smooth end, towards the node next to it: along the circle that has the direction of that node there, where one
+/// is beyond it, otherwise straight.
+fn end(here: Point, next: Point, beyond: Option<Point>) -> Vec2 {
+    let side = next - here;
+    match beyond.filter(|beyond| *beyond != here && next != here) {
+        None => side * THIRD,
+        Some(beyond) => {
+            let (along, chord) = ((beyond - here).normalize(), side.normalize());
+            (chord * (2.0 * along.dot(chord)) - along) * side.hypot() * THIRD
         }
-        (Some(before), None) => ((before - here) * THIRD, Vec2::ZERO),
-        (None, Some(after)) => (Vec2::ZERO, (after - here) * THIRD),
-        _ => (Vec2::ZERO, Vec2::ZERO),
     }
 }
 
+/// A path of nodes that goes smoothly through these points, with handles in hundredths of a pixel.
+pub fn through(points: &[Point]) -> Vec<Node> {
+    let corners: Vec<Node> = points.iter().map(|&at| Node::corner([at.x, at.y])).collect();
+    let mut nodes = with_handles(&corners, false, &(0..points.len()).collect(), Handles::Smooth);
+    for handle in nodes.iter_mut().flat_map(|node| [&mut node.handle_in, &mut node.handle_out]) {
+        *handle = handle.map(|length| number::rounded(length, 2));
+    }
+    nodes
+}
+
 /// So many nodes evenly along a path, which it goes through in the directions that it had there; straight sides stay straight.
-fn evenly(nodes: &[Node], closed: bool, count: usize) -> Vec<Node> {
+pub fn evenly(nodes: &[Node], closed: bool, count: usize) -> Vec<Node> {
     let path = bezier(nodes, closed);
     let sides: Vec<(PathSeg, f64)> = path.segments().map(|side| (side, side.arclen(ACCURACY_PX))).collect();
     let whole: f64 = sides.iter().map(|(_, length)| length).sum();
@@ -162,10 +187,12 @@ mod tests {
         );
         assert_eq!(
             (smooth[0].handle_in, smooth[0].handle_out),
-            ([0.0; 2], [10.0, 10.0]),
-            "an end points at its neighbor"
+            ([0.0; 2], xy(Vec2::new(0.0, third))),
+            "an end follows the circle"
         );
-        assert_eq!((smooth[2].handle_in, smooth[2].handle_out), ([-10.0, 10.0], [0.0; 2]));
+        assert_eq!((smooth[2].handle_in, smooth[2].handle_out), (xy(Vec2::new(0.0, third)), [0.0; 2]));
+        let two = with_handles(&nodes[..2], false, &[0, 1].into(), Handles::Smooth);
+        assert_eq!((two[0].handle_out, two[1].handle_in), ([10.0, 10.0], [-10.0, -10.0]), "two are joined straight");
         let closed = made(true, Handles::Smooth, &[0]);
         assert_eq!(closed[0].handle_out, xy(Vec2::new(-1.0, 1.0).normalize() * third));
         assert_eq!(closed[1..], nodes[1..], "only those that are chosen");

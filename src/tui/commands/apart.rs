@@ -57,7 +57,7 @@ fn turn(state: &mut State, call: &Call, (set, [done, undone]): Set) -> Done {
             return Ok(());
         }
         "" => targets(state, call)?,
-        path => vec![address::resolve(state.document(), path).map_err(|error| error.to_string())?],
+        path => vec![state.resolve(path)?],
     };
     let scene = state.document().scene();
     let found: BTreeSet<String> = pointers.iter().filter_map(|pointer| scene.mutable(pointer)).collect();

@@ -37,8 +37,15 @@ pub fn path_of(typed: &str) -> Option<(&str, &str, bool)> {
 pub fn candidates(table: &Table, state: &State, typed: &str) -> Vec<String> {
     match typed.split_once(' ') {
         None => table.names().into_iter().filter(|name| name.starts_with(typed)).collect(),
-        Some((command @ ("set" | "get" | "go"), path)) => {
-            complete::paths(state.document(), path).into_iter().map(|path| format!("{command} {path}")).collect()
+        Some(("set", settings)) => {
+            // Of several, the last goes on.
+            let begin = settings.rfind(" ").filter(|&end| settings[..end].contains('=')).map_or(0, |end| end + 1);
+            let (before, last) = settings.split_at(begin);
+            setting(state, last).into_iter().map(|one| format!("set {before}{one}")).collect()
+        }
+        Some((command @ ("get" | "go"), path)) => {
+            let paths = complete::paths_around(state.document(), &state.here(), path).into_iter();
+            paths.map(|path| format!("{command} {path}")).collect()
         }
         Some((command @ ("mute" | "solo" | "lock"), path)) => {
             let paths = complete::paths(state.document(), path).into_iter().filter(|path| leads_apart(state, path));
@@ -49,10 +56,10 @@ pub fn candidates(table: &Table, state: &State, typed: &str) -> Vec<String> {
             let all: BTreeSet<String> = table.names().into_iter().chain(fields).collect();
             all.into_iter().filter(|own| own.starts_with(name)).map(|own| format!("help {own}")).collect()
         }
-        Some(("use", name)) => {
+        Some((command @ ("use" | "along" | "shape"), name)) => {
             let names = state.document().scene().names(List::Shapes).into_iter();
             let begins = |own: &&str| own.starts_with(name.trim_start_matches('"'));
-            names.filter(begins).map(|own| format!("use {}", one_word(own))).collect()
+            names.filter(begins).map(|own| format!("{command} {}", one_word(own))).collect()
         }
         Some(("profile", name)) => {
             let names = profiles::offered(state).map(|found| found.preset.name).filter(|own| own.starts_with(name));
@@ -68,6 +75,15 @@ pub fn candidates(table: &Table, state: &State, typed: &str) -> Vec<String> {
             words.map(|word| format!("{name} {word}")).collect()
         }
     }
+}
+
+/// What a setting can go on as: with a step of its path, or with one of the words that it may set.
+fn setting(state: &State, typed: &str) -> Vec<String> {
+    let (document, here) = (state.document(), state.here());
+    let Some((path, value)) = typed.split_once('=') else { return complete::paths_around(document, &here, typed) };
+    let whole = address::around(document, &here, path).unwrap_or_default();
+    let values = complete::values(document, &format!("{whole}={value}")).into_iter();
+    values.map(|value| format!("{path}={value}")).collect()
 }
 
 /// Whether an address is that of a layer or a zone, or leads to some.

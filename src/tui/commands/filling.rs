@@ -11,7 +11,7 @@ use super::yanking::too_many;
 use crate::base::number;
 use crate::base::problem::quoted;
 use crate::base::text::counted;
-use crate::scene::{Document, Edit, address, field};
+use crate::scene::{Document, Edit, field};
 use crate::tui::document::cell::{Cell, Part};
 use crate::tui::document::csv;
 use crate::tui::document::rows::{self, follows};
@@ -80,7 +80,7 @@ fn fill(state: &mut State, call: &Call) -> Done {
 fn named(state: &State, place: &str) -> Result<(Sheet, BTreeSet<usize>), String> {
     let words = words(place)?;
     let [path, rows] = words.as_slice() else { return Err("fill takes PATH ROWS before its rows, as 0,2-5".into()) };
-    let node = address::resolve(state.document(), path).map_err(|error| error.to_string())?;
+    let node = state.resolve(path)?;
     let sheet = Sheet::of(state.document(), &node);
     let selected = rows::of_ranges(rows, sheet.len());
     let selected =

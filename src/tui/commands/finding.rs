@@ -14,7 +14,12 @@ use crate::tui::text::said::unquoted;
 
 pub const COMMANDS: &[Command] = &[
     command("search", "next|previous|TEXT", "Go to the next place with that name or value", search).counted(),
-    command("go", "PATH", "Go to the node or the field at a path; without one, to the scene", go),
+    command(
+        "go",
+        "PATH",
+        "Go to the node or the field at a path, .NAME to the nearest around the cursor; without one, to the scene",
+        go,
+    ),
     command("mark", "a..z", "Set a mark here", mark),
     command("jump-mark", "a..z", "Go to a mark", jump_mark),
     command("jumps", "[older|newer]", "Go back and forward along the jumps, or list them", jumps)
@@ -101,7 +106,7 @@ pub fn leave(state: &mut State) {
 fn go(state: &mut State, call: &Call) -> Done {
     let pointer = match call.text {
         "" => String::new(),
-        path => address::resolve(state.document(), path).map_err(|error| error.to_string())?,
+        path => state.resolve(path)?,
     };
     let before = state.spot();
     reveal(state, &pointer);
@@ -158,7 +163,7 @@ fn find(state: &mut State, steps: i64, whole: bool) -> Option<Match> {
     let called: Vec<(usize, usize)> = all.iter().filter(is_called).copied().collect();
     let matches = if whole && !called.is_empty() { &called } else { &all };
     let count = matches.len();
-    let here = here(state);
+    let here = state.here();
     let at = listed.iter().position(|one| one.pointer == here);
     // The first match after the cursor, or the last one before it.
     let after = matches.partition_point(|&(i, _)| at.is_some_and(|at| i <= at));
@@ -169,15 +174,6 @@ fn find(state: &mut State, steps: i64, whole: bool) -> Option<Match> {
     let one = &listed[i];
     let index = all.partition_point(|(other, _)| *other < i);
     Some(Match { pointer: one.pointer.clone(), address: one.address.clone(), part, index, count: all.len() })
-}
-
-/// What is under the cursor: the cell, else the row, else the node.
-fn here(state: &State) -> String {
-    if state.cursor.focus == Pane::Tree {
-        return state.cursor.node.clone();
-    }
-    let Some(row) = state.row() else { return state.cursor.node.clone() };
-    state.cursor.cell(&row).map_or(&row.pointer, |cell| &cell.pointer).clone()
 }
 
 /// While a search is being typed, moves the cursor to the first match.

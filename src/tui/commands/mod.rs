@@ -39,6 +39,7 @@ mod replacing;
 mod rowing;
 mod scripts;
 mod selecting;
+mod shaping;
 mod sharing;
 mod snapping;
 mod snapshots;
@@ -68,6 +69,7 @@ pub static TABLE: Table = Table(&[
     values::COMMANDS,
     replacing::COMMANDS,
     sharing::COMMANDS,
+    shaping::COMMANDS,
     undoing::COMMANDS,
     snapshots::COMMANDS,
     yanking::COMMANDS,

@@ -4,7 +4,6 @@ use super::command::{Call, Command, Done, command};
 use super::finding::leave as leave_place;
 use crate::base::pointer::Pointer;
 use crate::base::problem::quoted;
-use crate::scene::address;
 use crate::tui::document::tree;
 use crate::tui::events::Effect;
 use crate::tui::state::{Pane, State};
@@ -122,7 +121,7 @@ fn pane(state: &mut State, call: &Call) -> Done {
 
 fn collapse(state: &mut State, call: &Call) -> Done {
     if !call.text.is_empty() {
-        let pointer = address::resolve(state.document(), call.text).map_err(|error| error.to_string())?;
+        let pointer = state.resolve(call.text)?;
         state.cursor.collapsed.insert(pointer);
         return Ok(());
     }

@@ -4,7 +4,6 @@
 use serde_json::Value;
 
 use super::command::Done;
-use super::yanking::here;
 use super::{cells, obey};
 use crate::base::pointer::Pointer;
 use crate::scene::field;
@@ -56,7 +55,7 @@ pub fn pasted(state: &mut State, text: &str) -> Done {
 /// The list that takes rows: the one under the cursor, one around it, or one inside the node.
 fn target(state: &State) -> Option<Target<'_>> {
     let document = state.document();
-    let here = here(state);
+    let here = state.here();
     let lists = Pointer(&here).upward().map(|path| item_of(document, path).map_or(path, |(list, _)| list).to_owned());
     let inside = field::children(document, &state.cursor.node).into_iter();
     let inside = inside.filter(|child| child.field.kind.is_list()).map(|child| child.pointer);

@@ -9,7 +9,7 @@ use crate::base::text::counted;
 use crate::files::{clips, paths};
 use crate::layers::parts::materials::List;
 use crate::scene::field::{self, Kind};
-use crate::scene::{Document, Edit, address};
+use crate::scene::{Document, Edit};
 use crate::tui::document::choice::{Choice, Then};
 use crate::tui::document::places;
 use crate::tui::state::{Mode, State};
@@ -95,7 +95,7 @@ fn found(state: &State, words: &[String]) -> Result<Vec<Replacement>, String> {
     let document = state.document();
     let (from, to, within) = match words {
         [from, to] => (from, to, String::new()),
-        [from, to, path] => (from, to, address::resolve(document, path).map_err(|error| error.to_string())?),
+        [from, to, path] => (from, to, state.resolve(path)?),
         _ => return Err("replace takes FROM and TO, those with spaces in double quotes".into()),
     };
     if from.is_empty() {

@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 
 use super::command::{Call, Command, Done, command};
 use super::items::go_to;
-use super::yanking::here;
+use crate::base::geometry::point;
 use crate::base::pointer::Pointer;
 use crate::base::problem::{nearest, quoted};
 use crate::layers::parts::materials::List;
@@ -72,7 +72,7 @@ impl Kinds {
 }
 
 /// The key of the scene's list of shapes.
-const LIST: &str = "shapes";
+pub const LIST: &str = "shapes";
 
 /// The list of nodes of a shape.
 const NODES: &str = "nodes";
@@ -101,8 +101,8 @@ fn line(state: &State) -> Result<Line, String> {
         let fields = place.shape.properties(place.value);
         fields.iter().find_map(|(field, _)| closed(&Pointer(pointer).join(field)))
     };
-    let found = Pointer(&here(state)).upward().find_map(around);
-    let outline = || Pointer(&here(state)).upward().find_map(inside);
+    let found = Pointer(&state.here()).upward().find_map(around);
+    let outline = || Pointer(&state.here()).upward().find_map(inside);
     found.or_else(outline).ok_or_else(|| "go to an outline, a fold region or a curve first".into())
 }
 
@@ -230,20 +230,40 @@ fn leave_rows(state: &mut State, line: &Line) {
 /// A shape that is used, and whether from its end.
 type Used<'a> = (&'a str, bool);
 
-/// The shapes in the words of a line, each of which may have `reverse` behind it.
+/// Refuses a name that no shape has.
+pub fn known(state: &State, name: &str) -> Done {
+    let all = state.document().scene().names(List::Shapes);
+    if all.contains(name) {
+        return Ok(());
+    }
+    let near =
+        nearest(name, all.iter().copied()).unwrap_or(":shape lays one, :share makes one of what is there".into());
+    Err(format!("there is no shape {} ({near})", quoted(name)))
+}
+
+/// The shapes in the words of a line, each of which may have `reverse` behind it. One that ends where the one before ends is turned
+/// by itself.
 fn used<'a>(state: &State, words: &'a [String]) -> Result<Vec<Used<'a>>, String> {
     const BACK: &str = "reverse";
-    let known = state.document().scene().names(List::Shapes);
+    let shapes = &state.document().scene().shapes;
+    let ends = |name: &str, reverse: bool| {
+        let nodes = &shapes.get(name)?.nodes;
+        let ends = (point(nodes.first()?.at), point(nodes.last()?.at));
+        Some(if reverse { (ends.1, ends.0) } else { ends })
+    };
     let mut used: Vec<Used> = Vec::new();
-    for word in words {
-        match used.last_mut() {
-            Some((_, reverse)) if word == BACK && !*reverse => *reverse = true,
-            _ if known.contains(word.as_str()) => used.push((word, false)),
-            _ => {
-                let near = nearest(word, known.iter().copied()).unwrap_or("share makes one".into());
-                return Err(format!("there is no shape {} ({near})", quoted(word)));
-            }
+    for (i, word) in words.iter().enumerate() {
+        if word == BACK && i > 0 && words[i - 1] != BACK {
+            continue;
         }
+        known(state, word)?;
+        let is_turned = || {
+            let (name, reverse) = *used.last()?;
+            let ((_, end), (a, b)) = (ends(name, reverse)?, ends(word, false)?);
+            Some(end.distance(b) < end.distance(a))
+        };
+        let reverse = words.get(i + 1).is_some_and(|next| next == BACK) || is_turned().unwrap_or(false);
+        used.push((word, reverse));
     }
     match used.is_empty() {
         false => Ok(used),
@@ -256,6 +276,9 @@ fn used<'a>(state: &State, words: &'a [String]) -> Result<Vec<Used<'a>>, String>
 fn take(state: &mut State, call: &Call) -> Done {
     let words = words(call.text)?;
     let used = used(state, &words)?;
+    if let Some((list, kinds)) = regions(state) {
+        return add_region(state, &list, &kinds, &used);
+    }
     let document = state.document();
     let line = line(state)?;
     let parts: Vec<Value> = used.iter().map(|&(name, reverse)| shape::part(name, reverse)).collect();
@@ -277,10 +300,53 @@ fn take(state: &mut State, call: &Call) -> Done {
         _ => why,
     })?;
     leave_rows(state, &line);
-    let told = |&(name, reverse): &Used| format!("{}{}", quoted(name), if reverse { " reversed" } else { "" });
-    let told = used.iter().map(told).collect::<Vec<_>>().join(", ");
+    let told = told(&used);
     let (place, too) = (address(state, &line), if more && matches!(line, Line::Closed(..)) { " too" } else { "" });
     state.say(plain(&format!("{place} is made of {told}{too}")));
+    Ok(())
+}
+
+fn told(used: &[Used]) -> String {
+    let one = |&(name, reverse): &Used| format!("{}{}", quoted(name), if reverse { " reversed" } else { "" });
+    used.iter().map(one).collect::<Vec<_>>().join(", ")
+}
+
+/// The list of closed lines under the cursor, or of what there may be.
+fn regions(state: &State) -> Option<(String, Kinds)> {
+    let here = state.here();
+    let shape = Place::of(state.document().json(), &here)?.shape;
+    let of_list = |shape: Shape| match shape.body() {
+        Body::List(item, ..) => Kinds::of(item),
+        _ => None,
+    };
+    let within = |shape: Shape| {
+        let kinds = shape.choices().filter_map(|(kind, _)| shape.variant(kind));
+        let mut fields = kinds.flat_map(|variant| variant.properties(None));
+        fields.find_map(|(field, shape)| Some((Pointer(&here).join(field), of_list(shape)?)))
+    };
+    match shape.body() {
+        Body::Tagged(_) => within(shape),
+        _ => of_list(shape).map(|kinds| (here, kinds)),
+    }
+}
+
+/// Adds a closed line to a list, which may be that of something that is not there yet.
+fn add_region(state: &mut State, list: &str, kinds: &Kinds, used: &[Used]) -> Done {
+    let document = state.document();
+    let region = of_parts(kinds, used.iter().map(|&(name, reverse)| shape::part(name, reverse)).collect());
+    let holder = Pointer(list).parent().unwrap_or_default();
+    let edit = match document.json().pointer(list).and_then(Value::as_array).map(Vec::len) {
+        Some(count) => Edit::insert(document, list, count, region),
+        None => {
+            let begin = Edit::begin(document, holder).ok_or("there is no fold here")?;
+            let begun = document.apply(&begin).map_err(|problems| first(&problems))?;
+            Edit::all([begin, Edit::set(&begun, list, Value::Array(vec![region]))])
+        }
+    };
+    state.edit(edit, false)?;
+    go_to(state, holder);
+    let place = address::address(state.document(), list);
+    state.say(plain(&format!("{place} has one that is made of {}", told(used))));
     Ok(())
 }
 

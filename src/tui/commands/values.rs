@@ -12,7 +12,7 @@ pub const COMMANDS: &[Command] = &[
     command(
         "set",
         "PATH=VALUE ...",
-        "Set values by their paths; PATH*=2 and PATH=v*2 compute, * in a path is all",
+        "Set values by their paths; PATH*=2 and PATH=v*2 compute, * in a path is all, .NAME is the nearest around the cursor",
         set,
     )
     .change(),
@@ -26,7 +26,8 @@ fn set(state: &mut State, call: &Call) -> Done {
         return Err("set takes PATH=VALUE".into());
     }
     let scene = state.scene.path().to_owned();
-    let set = set::edit(state.document(), &settings, &scene).map_err(|error| match error {
+    let at = state.here();
+    let set = set::edit(state.document(), &settings, (&scene, &at)).map_err(|error| match error {
         // The name of the open scene would add nothing.
         Error::Scene { problems, .. } => first(&problems),
         other => other.to_string(),
@@ -36,11 +37,11 @@ fn set(state: &mut State, call: &Call) -> Done {
     state.edit(set.edit, false)?;
     let paths: Vec<String> = settings
         .iter()
-        .filter_map(|one| set::parse(one).ok())
-        .map(|(path, _)| path.trim_end_matches(['*', '/', '+']))
-        .map(|path| match address::resolve(state.document(), path) {
+        .map(|one| set::around(state.document(), &at, one).unwrap_or_else(|_| one.clone()))
+        .filter_map(|one| Some(set::parse(&one).ok()?.0.trim_end_matches(['*', '/', '+']).to_owned()))
+        .map(|path| match address::resolve(state.document(), &path) {
             Ok(pointer) => address::address(state.document(), &pointer),
-            Err(_) => path.to_owned(),
+            Err(_) => path,
         })
         .collect();
     state.say(match remarks.as_slice() {
@@ -52,7 +53,7 @@ fn set(state: &mut State, call: &Call) -> Done {
 }
 
 fn get(state: &mut State, call: &Call) -> Done {
-    let pointer = address::resolve(state.document(), call.text).map_err(|error| error.to_string())?;
+    let pointer = state.resolve(call.text)?;
     let value = field::counting(state.document(), &pointer);
     let value = value.ok_or_else(|| format!("{} is not set, and has no default", call.text))?;
     state.say(plain(&value.to_string()));

@@ -220,19 +220,6 @@ fn go_to_pasted(state: &mut State, pointer: &str, count: usize) {
     state.say(format!("{what} pasted"));
 }
 
-/// Where the cursor is: the cell in a table or form, else the node.
-pub fn here(state: &State) -> String {
-    let cell = || {
-        let sheet = state.sheet();
-        let row = sheet.row(state.cursor.row)?;
-        Some(state.cursor.cell(&row).map_or(&row.pointer, |cell| &cell.pointer).clone())
-    };
-    match state.cursor.focus {
-        Pane::Tree => state.cursor.node.clone(),
-        _ => cell().unwrap_or_else(|| state.cursor.node.clone()),
-    }
-}
-
 /// A way in which a value fits: the edit, the place of its first part, and the number of its parts.
 struct Way {
     edit: Edit,
@@ -267,7 +254,7 @@ fn fits(state: &State) -> Vec<Fit> {
         Kind::Number { .. } | Kind::Text | Kind::Bool | Kind::Choice(_) | Kind::Numbers(_) => {}
         Kind::Object | Kind::Tagged { .. } | Kind::Reference(_) => {}
     };
-    for path in Pointer(&here(state)).upward() {
+    for path in Pointer(&state.here()).upward() {
         let item = item_of(document, path);
         fits.extend(item.map(|(list, index)| Fit::List(list.to_owned(), index + 1)));
         let Some(field) = field::field(document, path) else { continue };
@@ -307,7 +294,7 @@ fn over_cells(state: &State, value: &Value) -> Option<Way> {
         Value::String(text) if cell.field.kind == Kind::Text => text.clone(),
         _ => return None,
     };
-    Some(Way { edit: entry::edit(state, &text).ok()?, pointer: here(state), count: 1 })
+    Some(Way { edit: entry::edit(state, &text).ok()?, pointer: state.here(), count: 1 })
 }
 
 /// A value as one item of a list, or its parts as several.
@@ -362,7 +349,7 @@ fn fields(document: &Document, form: &str, value: &Value) -> Option<Way> {
 /// Why the value fits nowhere: what would be needed at the cursor.
 fn refusal(state: &State, value: &Value) -> String {
     let document = state.document();
-    let here = here(state);
+    let here = state.here();
     let list = Pointer(&here).upward().find_map(|path| match field::field(document, path)?.kind.is_list() {
         true => Some(path.to_owned()),
         false => item_of(document, path).map(|(list, _)| list.to_owned()),

@@ -1,11 +1,29 @@
-//! Going to places and back.
+//! Where the cursor is, going to places, and back.
 
 use super::State;
-use super::cursor::Cursor;
+use super::cursor::{Cursor, Pane};
 use super::finding::{Origin, Spot};
+use crate::scene::address;
 use crate::tui::events::Effect;
 
 impl State {
+    /// What is under the cursor: the cell in a table or form, else the node.
+    pub fn here(&self) -> String {
+        match self.row().filter(|_| self.cursor.focus != Pane::Tree) {
+            Some(row) => self.cursor.cell(&row).map_or(&row.pointer, |cell| &cell.pointer).clone(),
+            None => self.cursor.node.clone(),
+        }
+    }
+
+    /// The place that an address means, typed with the cursor where it is.
+    ///
+    /// # Errors
+    /// As [`address::resolve`].
+    pub fn resolve(&self, address: &str) -> Result<String, String> {
+        let whole = address::around(self.document(), &self.here(), address);
+        whole.and_then(|whole| address::resolve(self.document(), &whole)).map_err(|error| error.to_string())
+    }
+
     /// Where the cursor is.
     pub fn spot(&self) -> Spot {
         let cursor = &self.cursor;

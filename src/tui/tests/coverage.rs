@@ -38,6 +38,7 @@ const TABLES: &[fn()] = &[
     super::rows::names_texts_and_numbers_are_replaced,
     super::piping::rows_go_through_a_program_or_nothing_changes,
     super::sharing::outlines_and_curves_are_made_of_shapes_and_get_them_back,
+    super::sharing::shapes_are_laid_and_what_moves_follows_them,
     super::rowing::rows_and_nodes_are_made_anew,
     super::rowing::the_cursor_goes_to_what_is_near,
     super::transforming::what_is_selected_is_transformed_in_one_step,

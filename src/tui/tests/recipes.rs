@@ -37,6 +37,18 @@ fn opened(folder: &Path, text: &str) -> State {
     state
 }
 
+/// How many keys a block takes: a pasted one as many as its text.
+fn keys(kind: &str, lines: &[&str]) -> usize {
+    let typed = |line: &&str| match kind == "paste" || line.starts_with([':', '/']) {
+        true => line.chars().count() + 1,
+        false => {
+            let words = line.split('"').enumerate();
+            words.map(|(i, part)| if i % 2 == 1 { part.chars().count() } else { part.split_whitespace().count() }).sum()
+        }
+    };
+    lines.iter().map(typed).sum()
+}
+
 /// Presses what a block says; returns what was asked for outside.
 fn follow(state: &mut State, kind: &str, lines: &[&str]) -> Vec<Effect> {
     let mut effects = Vec::new();
@@ -77,6 +89,9 @@ fn followed(name: &str) {
     let mut state = opened(folder.path(), &text);
     let mut effects = Vec::new();
     let blocks = blocks(&text);
+    let pressed: usize =
+        blocks.iter().filter(|(kind, _)| ["keys", "paste"].contains(kind)).map(|(kind, lines)| keys(kind, lines)).sum();
+    assert!(text.contains(&format!("\n{pressed} keys")), "{name} tells how many keys it takes: {pressed}");
     for (kind, lines) in blocks.iter().filter(|(kind, _)| ["keys", "paste"].contains(kind)) {
         effects.extend(follow(&mut state, kind, lines));
     }

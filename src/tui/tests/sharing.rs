@@ -71,13 +71,67 @@ pub fn outlines_and_curves_are_made_of_shapes_and_get_them_back() {
     ]);
 }
 
+const ARCS: &str =
+    ": \"shape low 0,20 20,30 40,20\" Enter : \"shape lid 0,20 20,0 40,20\" Enter : \"go layers.0.zones.0\" Enter";
+const FOLD: &str = ": \"go layers.face.zones.mouth\" Enter : \"go .fold\" Enter";
+
+#[test]
+pub fn shapes_are_laid_and_what_moves_follows_them() {
+    let arcs = |keys: &str| format!("{ARCS} : \"set .motion=[]\" Enter {keys}");
+    let along = arcs(": \"along low to lid\" Enter");
+    check(&[
+        (ARCS, "/shapes/lid/nodes/0", json!({ "at": [0, 20], "out": [0, -9.43] })),
+        (&format!("{ARCS} : \"shape lid 0,20 9,1\" Enter"), "/shapes/lid/nodes/1/at", json!([9, 1])),
+        (&arcs(": \"along low\" Enter"), &zone("/motion/0/jumps"), json!([{ "along": 0, "jump": [0, 0] }])),
+        (&along, &zone("/motion/0/nodes"), json!("low")),
+        (&along, &zone("/motion/0/jumps/10"), json!({ "along": 0.5, "jump": [0, -30] })),
+        // Measured anew, it stays one.
+        (
+            &format!("{along} : \"shape lid 0,20 20,10 40,20\" Enter : \"along low to lid\" Enter"),
+            &zone("/motion/0/jumps/10/jump"),
+            json!([0, -20]),
+        ),
+        (&format!("{along} : \"along low to lid\" Enter"), &zone("/motion/1"), json!(null)),
+        // Two with the same ends: the second is turned by itself.
+        (
+            &format!("{ARCS} {EYE} : \"use low lid\" Enter"),
+            &zone("/outline/parts"),
+            json!([{ "shape": "low" }, { "shape": "lid", "reverse": true }]),
+        ),
+        (&format!("{ARCS} {FOLD} : \"use lid\" Enter"), "/layers/0/zones/1/fold/rule", json!("cover")),
+        (
+            &format!("{ARCS} {FOLD} : \"use lid low\" Enter : \"use low lid\" Enter"),
+            "/layers/0/zones/1/fold/regions/1/parts/1",
+            json!({ "shape": "lid", "reverse": true }),
+        ),
+    ]);
+    for (line, part) in [
+        ("shape a 1,2", "shape takes a name and two points or more"),
+        ("shape a 1,2 3;4", "\"3;4\" is no place of the picture: write it as X,Y"),
+        ("along low up lid", "along takes the name of a shape, and where to"),
+        ("along low to lidd", "there is no shape \"lidd\" (did you mean \"lid\"?)"),
+        ("along low", "along is for what moves in a zone: go to one"),
+    ] {
+        let mut state = state();
+        press(&mut state, ARCS);
+        if line == "along low" {
+            obey(&mut state, "go timeline", None).unwrap();
+        }
+        let said = obey(&mut state, line, None).err().unwrap_or_default();
+        assert!(said.contains(part), "{line}: {said}");
+    }
+}
+
 #[test]
 fn what_is_no_line_or_no_shape_says_so() {
     for (keys, part) in [
         (": \"share a\" Enter".to_owned(), "left eye\".outline is made of the shape \"a\" now"),
         (": \"go timeline\" Enter : \"share a\" Enter".into(), "go to an outline, a fold region or a curve first"),
         (format!("{EYE} : \"share\" Enter"), "share takes a name"),
-        (format!("{EYE} : \"use lid\" Enter"), "there is no shape \"lid\" (share makes one)"),
+        (
+            format!("{EYE} : \"use lid\" Enter"),
+            "there is no shape \"lid\" (:shape lays one, :share makes one of what is there)",
+        ),
         (format!("{EYE} : \"share lid\" Enter : \"use lidd\" Enter"), "did you mean \"lid\""),
         (format!("{EYE} : \"share lid\" Enter : \"share a\" Enter"), "made of shapes already: :unshare"),
         (format!("{EYE} : \"share lid\" Enter {MOUTH} : \"share lid\" Enter"), "there is already a shape \"lid\""),
