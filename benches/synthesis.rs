@@ -4,7 +4,7 @@
 mod scenes;
 
 use divan::Bencher;
-use plica::layers::folding::field::{Field, Inputs};
+use plica::layers::folding::field::{Inputs, Made};
 use plica::layers::parts::materials::Materials;
 use plica::layers::parts::moment::CENTER;
 
@@ -61,5 +61,5 @@ fn edit_512x512_with_94_anchors_and_a_fold(bencher: Bencher, method: &str) {
 fn synthesis(bencher: Bencher, size: (usize, usize), anchors: usize, interpolation: &str) {
     let zone = scenes::zone(size, anchors, interpolation);
     let inputs = Inputs::new(&zone, size, CENTER);
-    bencher.bench(|| Field::new(&inputs, &Materials::default()));
+    bencher.bench(|| Made::new(&inputs, None, &Materials::default()));
 }

@@ -10,7 +10,8 @@ use std::time::Instant;
 use bytemuck::cast_slice;
 use plica::base::error::{Error, Result};
 use plica::layers::Layer;
-use plica::layers::folding::field::{Field, Inputs, mask};
+use plica::layers::folding::field::{Inputs, Made};
+use plica::layers::folding::inside::mask;
 use plica::layers::folding::model::Zone;
 use plica::layers::parts::moment::CENTER;
 use plica::ops::Context;
@@ -59,9 +60,9 @@ fn repeated(work: &str, opened: &Opened, count: u32) -> Result<Vec<u8>> {
             let (zone, size) = first_zone(opened)?;
             let (inputs, mut made) = (Inputs::new(zone, size, CENTER), None);
             for _ in 0..count {
-                made = Field::new(&inputs, &opened.materials).map_err(|problem| opened.failed(problem))?;
+                made = Made::new(&inputs, None, &opened.materials).map_err(|problem| opened.failed(problem))?;
             }
-            made.iter().for_each(|(field, _)| last.extend_from_slice(cast_slice(field.jumps.cells())));
+            made.iter().for_each(|made| last.extend_from_slice(cast_slice(made.field.jumps.cells())));
         }
         "mask" => {
             let (zone, size) = first_zone(opened)?;

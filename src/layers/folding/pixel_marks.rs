@@ -137,8 +137,8 @@ mod tests {
         let field = Field {
             x0: 3,
             y0: 0,
-            inside: Grid::filled(10, 3, true),
-            jumps: Grid::filled(10, 3, [2.0, 0.0]),
+            inside: Arc::new(Grid::filled(10, 3, true)),
+            jumps: Arc::new(Grid::filled(10, 3, [2.0, 0.0])),
             folds: None,
         };
         let found: Vec<_> = lattice(&field, 4.0).map(|pixel| (pixel.index, pixel.at)).collect();

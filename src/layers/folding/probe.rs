@@ -90,6 +90,7 @@ pub fn read_out(probe: Option<Probe>) -> ReadOut {
 
 fn at(zone: &Zone, pixel: &Pixel, clock: &Clock, origin: Point, time: f64) -> Probe {
     let s = clock.s(time);
+    let jump = Vec2::new(pixel.jump[0].into(), pixel.jump[1].into());
     let crossings = if s < 0.0 { &pixel.crossings.behind } else { &pixel.crossings.ahead };
     let rule = zone.fold.as_ref().and_then(|fold| fold.rule());
     let effective = match rule {
@@ -101,14 +102,14 @@ fn at(zone: &Zone, pixel: &Pixel, clock: &Clock, origin: Point, time: f64) -> Pr
     let active = |s: f64| rule.is_none_or(|r| r.effective(pixel.crossings.inside, &pixel.crossings.ahead, s).is_some());
     Probe {
         zone: zone.name.clone(),
-        jump: pixel.jump,
+        jump,
         active_parts: active_parts(&thresholds, active),
         thresholds,
         tau: clock.tau(time),
         s,
         e,
         active: effective.is_some(),
-        read: origin + pixel.jump * e,
+        read: origin + jump * e,
         frame: None,
     }
 }

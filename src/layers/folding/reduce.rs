@@ -3,8 +3,10 @@
 
 use std::sync::Arc;
 
-use super::field::{Field, Folds, Ragged};
+use super::field::Field;
+use super::ragged::Ragged;
 use super::synth::{Synth, ZoneSynth};
+use super::thresholds::Folds;
 use crate::base::pixels::Grid;
 use crate::base::reduce::Reduced;
 
@@ -47,8 +49,8 @@ fn field(field: &Field, factor: usize) -> Option<Field> {
     Some(Field {
         x0: columns.start,
         y0: rows.start,
-        inside: Grid::from_cells(width, height, kept.iter().map(|&i| field.inside.cells()[i]).collect()),
-        jumps: Grid::from_cells(width, height, kept.iter().map(jump).collect()),
+        inside: Arc::new(Grid::from_cells(width, height, kept.iter().map(|&i| field.inside.cells()[i]).collect())),
+        jumps: Arc::new(Grid::from_cells(width, height, kept.iter().map(jump).collect())),
         folds: field.folds.as_ref().map(|folds| Folds {
             rule: folds.rule,
             inside: Grid::from_cells(width, height, kept.iter().map(|&i| folds.inside.cells()[i]).collect()),
@@ -59,10 +61,5 @@ fn field(field: &Field, factor: usize) -> Option<Field> {
 }
 
 fn some_of(ragged: &Ragged, kept: &[usize]) -> Ragged {
-    let mut some = Ragged { starts: vec![0], values: Vec::new() };
-    for &i in kept {
-        some.values.extend_from_slice(ragged.of(i));
-        some.starts.push(some.values.len() as u32);
-    }
-    some
+    Ragged::new(kept.iter().map(|&i| ragged.of(i)))
 }

@@ -27,6 +27,16 @@ pub struct Crossings {
     pub behind: Vec<f64>,
 }
 
+/// What paths are followed with, one after the other.
+#[derive(Default)]
+pub struct Walk {
+    /// Places where membership of a region changes, and the region.
+    events: Vec<(f64, usize)>,
+    /// Which regions contain the places just beside the init-position.
+    beside: Vec<bool>,
+    found: Crossings,
+}
+
 /// Sides that a run of paths may cross, and the region they belong to.
 pub struct Near {
     region: usize,
@@ -44,11 +54,6 @@ impl Regions {
         &self.polygons
     }
 
-    /// Number of regions.
-    pub fn count(&self) -> usize {
-        self.polygons.len()
-    }
-
     /// The sides that can meet paths within `bounds`; most runs of pixels have none.
     pub fn sides_within(&self, bounds: Rect) -> Vec<Near> {
         let bounds = bounds.inflate(1e-6, 1e-6);
@@ -58,33 +63,28 @@ impl Regions {
         self.polygons.iter().enumerate().flat_map(of_region).collect()
     }
 
-    /// Which regions contain each of the `len` places from `first` on, one pixel apart: one list of flags per region.
-    pub fn memberships(&self, first: Point, len: usize) -> Vec<Vec<bool>> {
-        let mut xs = Vec::new();
-        let row = |polygon: &Polygon| {
-            polygon.row_crossings(first.y, &mut xs);
-            (0..len).map(|k| xs.partition_point(|&x| x <= first.x + k as f64) % 2 == 1).collect()
-        };
-        self.polygons.iter().map(row).collect()
+    /// Which regions contain `q`.
+    pub fn members(&self, q: Point) -> Vec<bool> {
+        self.polygons.iter().map(|polygon| polygon.contains(q)).collect()
     }
 
     /// Where the path from `q` along `jump` meets the union, for s in `low..=high`. `sides` must include all that the
     /// path can cross; `member` says which regions contain `q`.
-    pub fn crossings(
+    pub fn follow<'a>(
         &self,
-        q: Point,
-        jump: Vec2,
+        (q, jump): (Point, Vec2),
         (low, high): (f64, f64),
         sides: &[Near],
         member: &[bool],
-    ) -> Crossings {
-        let inside = member.iter().any(|&m| m);
-        if sides.is_empty() || jump == Vec2::ZERO {
-            return Crossings { inside, ..Crossings::default() };
-        }
-        let mut events: Vec<(f64, usize)> = Vec::new();
+        walk: &'a mut Walk,
+    ) -> &'a Crossings {
+        let Walk { events, beside, found } = walk;
+        found.inside = member.contains(&true);
+        found.ahead.clear();
+        found.behind.clear();
+        events.clear();
         let line = Line::new(q, jump);
-        for &Near { region, part } in sides {
+        for &Near { region, part } in sides.iter().filter(|_| jump != Vec2::ZERO) {
             self.polygons[region].crossings_in(part, &line, &mut |s| {
                 if s >= low - SAME && s <= high + SAME {
                     events.push((s, region));
@@ -92,42 +92,47 @@ impl Regions {
             });
         }
         if events.is_empty() {
-            return Crossings { inside, ..Crossings::default() };
+            return found;
         }
         events.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
         let first_ahead = events.partition_point(|(s, _)| *s < -SAME);
         let first_beyond = events.partition_point(|(s, _)| *s <= SAME);
-        let at_init = first_ahead < first_beyond;
-        let start = |sign: f64| if at_init { self.member_beside(q, jump, sign) } else { member.to_vec() };
-        let ahead = events[first_beyond..].iter().copied();
-        let behind = events[..first_ahead].iter().rev().copied();
-        Crossings {
-            inside,
-            ahead: changes(inside, start(1.0), ahead).into_iter().filter(|s| *s <= high).collect(),
-            behind: changes(inside, start(-1.0), behind).into_iter().filter(|s| *s >= low).collect(),
-        }
-    }
-
-    /// Which regions contain the places just beside an init-position that is exactly on a side: by the parity of the
-    /// crossings beyond.
-    fn member_beside(&self, q: Point, jump: Vec2, sign: f64) -> Vec<bool> {
-        let parity = |polygon: &Polygon| {
-            let crossings = polygon.line_crossings(q, jump);
-            crossings.iter().filter(|&s| s * sign > SAME).count() % 2 == 1
+        let start = |sign: f64, beside: &mut Vec<bool>| {
+            beside.clear();
+            match first_ahead < first_beyond {
+                true => beside.extend(self.polygons.iter().map(|polygon| is_inside_beside(polygon, q, jump, sign))),
+                false => beside.extend_from_slice(member),
+            }
         };
-        self.polygons.iter().map(parity).collect()
+        start(1.0, beside);
+        changes(found.inside, beside, events[first_beyond..].iter(), &mut found.ahead);
+        start(-1.0, beside);
+        changes(found.inside, beside, events[..first_ahead].iter().rev(), &mut found.behind);
+        found.ahead.retain(|s| *s <= high);
+        found.behind.retain(|s| *s >= low);
+        found
     }
+}
+
+/// Whether the place just beside an init-position that is exactly on a side is inside: by the parity of the crossings
+/// beyond, along the jump vector or, with a negative `sign`, against it.
+fn is_inside_beside(polygon: &Polygon, q: Point, jump: Vec2, sign: f64) -> bool {
+    polygon.line_crossings(q, jump).iter().filter(|&s| s * sign > SAME).count() % 2 == 1
 }
 
 /// Walks from s = 0 outwards through `events` (places, and the region that changes there) and lists where the union
 /// changes. `member` says which regions contain the places just beside s = 0.
-fn changes(inside: bool, mut member: Vec<bool>, events: impl Iterator<Item = (f64, usize)>) -> Vec<f64> {
-    let mut found = Vec::new();
+fn changes<'a>(
+    inside: bool,
+    member: &mut [bool],
+    events: impl Iterator<Item = &'a (f64, usize)>,
+    found: &mut Vec<f64>,
+) {
     let mut before = inside;
     let mut place = 0.0f64;
-    for (s, region) in events {
+    for &(s, region) in events {
         if (s - place).abs() > SAME {
-            let now = member.iter().any(|&m| m);
+            let now = member.contains(&true);
             if now != before {
                 found.push(place);
             }
@@ -135,10 +140,9 @@ fn changes(inside: bool, mut member: Vec<bool>, events: impl Iterator<Item = (f6
         }
         member[region] = !member[region];
     }
-    if member.iter().any(|&m| m) != before {
+    if member.contains(&true) != before {
         found.push(place);
     }
-    found
 }
 
 #[cfg(test)]
@@ -154,9 +158,10 @@ mod tests {
         let (q, jump) = (Point::from(q), Vec2::from(jump));
         let bounds = Rect::from_points(q + jump * range.0, q + jump * range.1);
         let sides = regions.sides_within(bounds);
-        let member: Vec<bool> = regions.memberships(q, 1).iter().map(|m| m[0]).collect();
-        let found = regions.crossings(q, jump, range, &sides, &member);
-        (found.inside, found.ahead, found.behind)
+        let member = regions.members(q);
+        let mut walk = Walk::default();
+        let found = regions.follow((q, jump), range, &sides, &member, &mut walk);
+        (found.inside, found.ahead.clone(), found.behind.clone())
     }
 
     #[test]

@@ -6,9 +6,8 @@ use std::sync::Arc;
 use kurbo::Vec2;
 
 use super::clock::Clock;
-use super::field::{self, Field, Inputs, Prepared};
+use super::field::{self, Field, Inputs, Made, Prepared};
 use super::model::{PictureLayer, Sampler, Zone};
-use crate::base::budget::Share;
 use crate::base::clip::Clip;
 use crate::base::geometry::vector;
 use crate::base::picture::Picture;
@@ -39,9 +38,7 @@ pub struct ZoneSynth {
     pub source: Source,
     /// When they read it.
     pub clock: Clock,
-    inputs: Inputs,
-    /// The memory that the field takes, counted until its last owner drops it.
-    share: Arc<Share>,
+    made: Made,
 }
 
 /// What the samplers of a zone read, and how it is blended with what is beneath.
@@ -93,10 +90,8 @@ pub fn synth(layer: &PictureLayer, making: &Making, previous: Option<&Synth>) ->
     let &Making { wrap, materials, place, .. } = making;
     let picture = materials.picture(&layer.image, "/image")?;
     let size = (picture.width(), picture.height());
-    let known = |zone: &Zone, inputs: &Inputs| {
-        let mut before = previous.into_iter().flat_map(|p| &p.zones);
-        before.find(|known| known.inputs == *inputs && !reads_file(zone))
-    };
+    let before = |zone: &Zone| previous.filter(|_| !reads_file(zone)).map_or(&[][..], |previous| &previous.zones);
+    let known = |zone: &Zone, inputs: &Inputs| before(zone).iter().find(|known| known.made.inputs == *inputs);
     let inputs: Vec<Inputs> = layer.zones.iter().map(|zone| Inputs::new(zone, size, place)).collect();
     let to_make = layer.zones.iter().zip(&inputs).filter(|(zone, inputs)| known(zone, inputs).is_none());
     materials.expect(to_make.map(|(zone, _)| field::pixels(zone, size)).sum());
@@ -104,23 +99,17 @@ pub fn synth(layer: &PictureLayer, making: &Making, previous: Option<&Synth>) ->
     for (index, (zone, inputs)) in layer.zones.iter().zip(inputs).enumerate() {
         let source = source(layer, index, &picture, making)?;
         let made = match known(zone, &inputs) {
-            Some(known) => Some((known.field.clone(), known.share.clone())),
-            None => Field::new(&inputs, materials)
-                .map_err(|problem| problem.under(&format!("/zones/{index}")))?
-                .map(|(field, share)| (field, Arc::new(share))),
+            Some(known) => Some(known.made.clone()),
+            None => {
+                let before = before(zone).iter().find(|known| known.name == zone.name).map(|known| &known.made);
+                Made::new(&inputs, before, materials).map_err(|problem| problem.under(&format!("/zones/{index}")))?
+            }
         };
         if materials.stopped() {
             return Err(Problem::error("", "stopped"));
         }
-        zones.extend(made.map(|(field, share)| ZoneSynth {
-            name: zone.name.clone(),
-            index,
-            field,
-            source,
-            clock: zone.clock(wrap),
-            inputs,
-            share,
-        }));
+        let (name, clock) = (zone.name.clone(), zone.clock(wrap));
+        zones.extend(made.map(|made| ZoneSynth { name, index, field: made.field.clone(), source, clock, made }));
     }
     Ok(Synth { picture, zones })
 }
@@ -137,7 +126,6 @@ struct ZoneParts {
     index: usize,
     source: Source,
     clock: Clock,
-    inputs: Inputs,
 }
 
 impl PreparedLayer {
@@ -154,7 +142,7 @@ impl PreparedLayer {
             let inputs = Inputs::new(zone, size, place);
             let prepared = Prepared::new(&inputs, materials);
             let prepared = prepared.map_err(|problem| problem.under(&format!("/zones/{index}")))?;
-            Ok((ZoneParts { name: zone.name.clone(), index, source, clock: zone.clock(wrap), inputs }, prepared))
+            Ok((ZoneParts { name: zone.name.clone(), index, source, clock: zone.clock(wrap) }, prepared))
         };
         let zones = layer.zones.iter().enumerate().map(ready).collect::<Result<_, _>>()?;
         Ok(PreparedLayer { picture, zones })
@@ -173,14 +161,13 @@ impl ready::Prepared for PreparedLayer {
         let zones = self.zones.iter().map(|(zone, prepared)| {
             let made = prepared.field((within(&columns, width), within(&rows, height)), materials);
             let made = made.map_err(|problem| problem.under(&format!("/zones/{}", zone.index)))?;
-            Ok(made.map(|(field, share)| ZoneSynth {
+            Ok(made.map(|made| ZoneSynth {
                 name: zone.name.clone(),
                 index: zone.index,
-                field,
+                field: made.field.clone(),
                 source: zone.source.clone(),
                 clock: zone.clock.clone(),
-                inputs: zone.inputs.clone(),
-                share: Arc::new(share),
+                made,
             }))
         });
         let zones = zones.filter_map(Result::transpose).collect::<Result<_, Problem>>()?;

@@ -2,7 +2,8 @@
 //! list; every pixel's part ends with a number that no s reaches, so that the shader needs neither counts nor a second
 //! loop.
 
-use super::field::{Field, Ragged};
+use super::field::Field;
+use super::ragged::Ragged;
 use crate::base::pixels::Grid;
 use crate::layers::parts::plan::{Format, Packed, Upload};
 
@@ -75,8 +76,10 @@ impl Lists {
 
 #[cfg(test)]
 mod tests {
-    use super::super::field::Folds;
+    use std::sync::Arc;
+
     use super::super::fold::Rule;
+    use super::super::thresholds::Folds;
     use super::*;
 
     #[test]
@@ -84,13 +87,13 @@ mod tests {
         let field = Field {
             x0: 0,
             y0: 0,
-            inside: Grid::from_cells(3, 1, vec![true, true, false]),
-            jumps: Grid::filled(3, 1, [1.0, 0.0]),
+            inside: Arc::new(Grid::from_cells(3, 1, vec![true, true, false])),
+            jumps: Arc::new(Grid::filled(3, 1, [1.0, 0.0])),
             folds: Some(Folds {
                 rule: Rule::Cover,
                 inside: Grid::from_cells(3, 1, vec![false, true, true]),
-                ahead: Ragged { starts: vec![0, 2, 2, 3], values: vec![0.25, 0.5, 9.0] },
-                behind: Ragged { starts: vec![0, 0, 1, 1], values: vec![-0.75] },
+                ahead: Ragged::new([&[0.25, 0.5][..], &[], &[9.0]]),
+                behind: Ragged::new([&[][..], &[-0.75], &[]]),
             }),
         };
         let texels = Texels::pack(&field);

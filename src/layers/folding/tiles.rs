@@ -235,7 +235,7 @@ fn all_or_none(field: &Field, pixels: Range<usize>, s: f64) -> Option<bool> {
     }
     let Some(folds) = &field.folds else { return Some(true) };
     let crossings = if s < 0.0 { &folds.behind } else { &folds.ahead };
-    if crossings.starts[pixels.start] != crossings.starts[pixels.end] {
+    if crossings.any(pixels.start, pixels.end) {
         return None;
     }
     let inside = same(&folds.inside.cells()[pixels])?;

@@ -2,7 +2,8 @@
 //! every place at which its path meets the fold regions.
 
 use crate::base::pixels::Grid;
-use crate::layers::folding::field::{Field, Folds};
+use crate::layers::folding::field::Field;
+use crate::layers::folding::thresholds::Folds;
 use crate::layers::parts::bundle::{Channel, Texture};
 
 /// Crossings of all pixels, in blocks of the box's size stacked downward.
