@@ -259,6 +259,7 @@ fn set_takes_all_or_nothing() {
         (&["title=Dog", "Z.feathr=1"], 1, "did you mean \"feather\"?"),
         (&["Z.feather=1e999"], 1, "is too large a number"),
         (&["Z.feather"], 2, "PATH=VALUE"),
+        (&["Z.feather 4"], 2, "feather 4: write it as"),
     ] {
         let ran = set(settings);
         assert_eq!(ran.status, status, "{ran:?}");

@@ -120,13 +120,19 @@ fn what_is_no_pass_says_what_there_is() {
         ("--pass dept -o a.exr", "there is no pass \"dept\" (did you mean \"depth\"?)"),
         ("--pass depth:fra -o a.exr", "there is no layer \"fra\" (did you mean \"far\"?)"),
         ("--pass depth -o a.gif", "a pass is written as .exr or, to look at, .png (as -o a-%04d.exr)"),
-        ("--pass depth -o a.exr", "2 frames do not fit one file"),
+        ("--pass depth --frames 0,1 -o a.exr", "2 frames do not fit one file"),
         ("--pass depth --gpu -o a-%d.exr", "--gpu is not for passes"),
         ("--pass depth -o a-%d.jpg", "a pass is written as .exr or, to look at, .png"),
     ] {
         let Output { status, stderr, .. } = run(folder.path(), &format!("render s.plica.json {line}"));
         let said = String::from_utf8_lossy(&stderr);
         assert!(status.code() == Some(2) && said.contains(what), "{line}: {said}");
+    }
+    // Nothing moves: all that there is is one picture.
+    for line in ["render s.plica.json --pass depth -o still.exr", "render s.plica.json -o still.png"] {
+        let Output { status, stderr, .. } = run(folder.path(), line);
+        let said = String::from_utf8_lossy(&stderr);
+        assert!(status.success() && said.contains("nothing moves in the scene"), "{line}: {said}");
     }
     good(folder.path(), "render s.plica.json --pass normal -o n-%d.png");
     assert_eq!(
@@ -158,4 +164,16 @@ fn a_probe_is_of_what_is_seen() {
     let far = probed("--at 20.5,12.5 --layer far");
     assert_eq!((&far["layer"], &far["triangle"]), (&"far".into(), &0.into()));
     assert_eq!(probed("--at 2,2")["layer"], serde_json::Value::Null);
+    // One that is outside does not keep the others from being answered, in order.
+    let Output { status, stdout, stderr } =
+        run(folder.path(), "probe s.plica.json --json --at 20,12 --at 48,0 --at 2,2");
+    let told: Vec<serde_json::Value> =
+        String::from_utf8_lossy(&stdout).lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let [first, outside, last] = told.as_slice() else { panic!("{told:?}") };
+    let why = "--at 48,0: outside the picture of 48 x 32 pixels (from 0,0 to less than 48,32)";
+    assert_eq!(
+        (&first["layer"], outside, &last["layer"]),
+        (&"near".into(), &serde_json::json!({ "error": why }), &serde_json::Value::Null)
+    );
+    assert!(status.code() == Some(1) && String::from_utf8_lossy(&stderr).contains(why));
 }

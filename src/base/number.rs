@@ -1,11 +1,14 @@
 //! Numbers as a person writes them: no point where they are whole.
 
-use serde_json::Value;
+use serde_json::{Number, Value};
 
 use super::maths::powi;
 
 /// Whole numbers below this have all their digits.
 const MOST_WHOLE: f64 = 1e15;
+
+/// Smaller ones have no decimals, but a power of ten.
+const LEAST_DECIMAL: f64 = 1e-6;
 
 fn is_whole(number: f64) -> bool {
     number == number.trunc() && number.abs() < MOST_WHOLE
@@ -16,9 +19,18 @@ pub fn json(number: f64) -> Value {
     if is_whole(number) { Value::from(number as i64) } else { Value::from(number) }
 }
 
-/// A number as text with all its decimals.
+/// A number as text with all its decimals: a power of ten where it would have many zeros otherwise.
 pub fn text(number: f64) -> String {
-    if is_whole(number) { format!("{number:.0}") } else { number.to_string() }
+    match number {
+        _ if is_whole(number) => format!("{number:.0}"),
+        _ if number.is_finite() && !(LEAST_DECIMAL..MOST_WHOLE).contains(&number.abs()) => format!("{number:e}"),
+        _ => number.to_string(),
+    }
+}
+
+/// A number of a document as text: `1e300` and `50`, where JSON has `1e+300` and `50.0`.
+pub fn written(number: &Number) -> String {
+    number.as_f64().filter(|_| number.is_f64()).map_or_else(|| number.to_string(), text)
 }
 
 /// The nearest number with so many decimals, as a person would write it.
@@ -72,6 +84,10 @@ mod tests {
         for (number, expected) in [(3.0, "3"), (-0.5, "-0.5"), (-7.0, "-7"), (1e14, "100000000000000"), (0.1, "0.1")] {
             assert_eq!((json(number).to_string(), text(number)), (expected.to_owned(), expected.to_owned()));
         }
+        for (number, expected) in [(1e300, "1e300"), (-2.5e-7, "-2.5e-7"), (0.000_25, "0.00025"), (1e9, "1000000000")] {
+            assert_eq!([text(number), written(&Number::from_f64(number).unwrap())], [expected; 2]);
+        }
+        assert_eq!(written(&Number::from(u64::MAX)), u64::MAX.to_string());
         assert_eq!(json(1e15).to_string(), "1e+15".parse::<f64>().map(Value::from).unwrap().to_string());
         assert_eq!(json(f64::NAN), Value::Null);
     }

@@ -8,6 +8,13 @@ use crate::base::numbered;
 /// How the names of numbered frames end: as one sees them, and as light.
 pub const PICTURES: [&str; 2] = [".png", ".exr"];
 
+/// Whether a file of this name is a picture, and one alone.
+pub fn is_one_picture(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
+    PICTURES.iter().any(|ending| name.ends_with(ending))
+        && !numbered::Pattern::of(&name).is_ok_and(|name| name.is_numbered())
+}
+
 /// A file name with one frame number in it.
 #[derive(Debug, PartialEq)]
 pub struct Pattern {
@@ -21,9 +28,16 @@ impl Pattern {
     ///
     /// # Errors
     /// The name holds more than one number, something else after a `%`, or does not end in one of `endings` (for
-    /// frames that are `what`).
+    /// frames that are `what`); the number is in the name of a folder.
     pub fn parse(path: &Path, endings: &[&str], what: &str) -> Result<Option<Self>> {
         let wrong = |what: &str| Error::Usage(format!("{}: {what} (as in frame-%04d.png)", path.display()));
+        let open = |folder: &Path| {
+            let name = folder.file_name().unwrap_or_default().to_string_lossy();
+            numbered::Pattern::of(&name).is_ok_and(|name| name.is_numbered()) && !folder.is_dir()
+        };
+        if path.ancestors().skip(1).any(open) {
+            return Err(wrong("the number of a frame is in the name of its file, not of its folder"));
+        }
         let name = path.file_name().map(|n| n.to_string_lossy()).unwrap_or_default();
         let name = numbered::Pattern::of(&name).map_err(|what| wrong(&what))?;
         if !name.is_numbered() {
@@ -82,6 +96,8 @@ mod tests {
             ("%d-%d.png", "two frame numbers"),
             ("%04d.gif", "frames are pictures and end in .png or .exr"),
             ("50%", "\"%\" is no frame number"),
+            ("out/%04d/a.png", "in the name of its file, not of its folder (as in frame-%04d.png)"),
+            ("%d/a.gif", "not of its folder"),
         ] {
             let error = parse(path).unwrap_err().to_string();
             assert!(error.contains(what), "{path}: {error}");

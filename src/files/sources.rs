@@ -29,12 +29,14 @@ pub fn list_of(path: &Path) -> List {
 pub fn picture(path: &Path, limits: &Limits) -> Result<picture::Loaded> {
     let name = path.to_string_lossy();
     let is_other = || path.is_file() && paths::kind_of(paths::file_of(&name)).is_none() && !picture::is_one(path);
-    picture::read(path, limits).map_err(|error| match is_other() {
-        true => Error::at(path.display(), "is nothing that a scene shows").cure(
-            "name a picture (PNG, JPEG, TIFF, OpenEXR and others), a model (.obj, .glb, .gltf) or a clip (falls/%04d.jpg, a \
-             folder of numbered pictures, a video)",
-        ),
-        false => error,
+    picture::read(path, limits).map_err(|error| match &error {
+        Error::Failed { what, .. } if what == kinds::UNKNOWN && is_other() => {
+            Error::at(path.display(), "is nothing that a scene shows").cure(
+                "name a picture (PNG, JPEG, TIFF, OpenEXR and others), a model (.obj, .glb, .gltf) or a clip (falls/%04d.jpg, a \
+                 folder of numbered pictures, a video)",
+            )
+        }
+        _ => error,
     })
 }
 
@@ -53,8 +55,10 @@ pub(super) fn expect_video(file: &File, place: &str) -> Result<()> {
     match kinds::still(&start) {
         _ if start.is_empty() => is("empty", "copy it again from where it came"),
         Some(picture) => is(&format!("{picture}, not a video"), &pattern_for(place)),
-        None if mesh::begins(&start, place) => is("a mesh, not a video", "list it among the scene's meshes"),
-        None => Ok(()),
+        None => match mesh::instead(&start, place) {
+            Some([what, cure]) => is(&format!("{what}, not a video"), cure),
+            None => Ok(()),
+        },
     }
 }
 
@@ -106,7 +110,12 @@ mod tests {
         for (place, bytes, expected) in [
             ("cl/0000.png", &b"\x89PNG\r\n\x1a\n...."[..], "is a PNG picture, not a video (write cl/%04d.png)"),
             ("cat.mp4", b"\xff\xd8\xff", "is a JPEG picture, not a video (a clip is made of numbered pictures, as"),
-            ("cow.mp4", b"glTF", "is a mesh, not a video (list it among the scene's meshes)"),
+            (
+                "cow.mp4",
+                b"glTF",
+                "is a mesh, not a video (call it .obj, .glb or .gltf, and list it among the scene's meshes)",
+            ),
+            ("a.mp4", b"{ \"plica\": 1 }", "is a Plica scene, not a video (plica edit opens it)"),
             ("cow.mp4", b"v 0 0 0\n", "is a mesh, not a video"),
             ("a.mp4", b"", "is empty (copy it again from where it came)"),
             ("a.png", b"\x89PNG\r\n\x1a\n....acTL", ""),

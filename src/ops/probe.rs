@@ -35,7 +35,7 @@ pub struct Args {
     options: SceneOptions,
 }
 
-/// Prints one answer per `--at`, in order.
+/// Prints one answer per `--at`, in order. Points outside the picture are told, and fail once the others are answered.
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let opened = Opened::new(&args.scene, &args.options, context)?;
     let scene = opened.document.scene();
@@ -54,8 +54,19 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
         let read = scene.layers[index].technique().probe(&making, ready, pixel, &moment);
         read.map_err(|problem| Error::at(args.scene.display(), problem))
     };
-    let pixels = args.at.iter().map(|at| pixel_at(*at, size)).collect::<Result<Vec<_>>>()?;
-    for pixel in pixels {
+    let mut outside = None;
+    for at in &args.at {
+        let pixel = match pixel_at(*at, size) {
+            Ok(pixel) => pixel,
+            Err(error) => {
+                if args.json {
+                    context.print(json!({ "error": error.to_string() }))?;
+                }
+                let before: Option<Error> = outside.replace(error);
+                before.into_iter().for_each(|error| context.messages.say(&error.to_string()));
+                continue;
+            }
+        };
         let seen = all.and_then(|synth| passes::topmost(synth, args.time, pixel));
         let layer = seen.unwrap_or(asked);
         let mut read = vec![look(layer, pixel)?.unwrap_or_default()];
@@ -69,7 +80,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
         let answer = if args.json { line(&read, color) } else { prose(&read, color, pixel, args.time) };
         context.print(answer)?;
     }
-    Ok(())
+    outside.map_or(Ok(()), Err)
 }
 
 /// The index of the layer `name`, or of the first one.

@@ -175,8 +175,18 @@ impl Set {
     pub fn remarks(&self, before: &Document, scene: &Path, options: &Options) -> Vec<String> {
         let unread = materials::unread(scene, [before, &self.after], options);
         let unread = unread.iter().map(|problem| address::of_problem(&self.after, problem).to_string());
-        self.lost.iter().cloned().chain(self.edit.overruled(before)).chain(unread).collect()
+        let camera = without_camera(before, &self.after);
+        self.lost.iter().cloned().chain(self.edit.overruled(before)).chain(camera).chain(unread).collect()
     }
+}
+
+/// That a setting has given a scene a camera, if nothing says where that stands.
+fn without_camera(before: &Document, after: &Document) -> Option<String> {
+    let made = before.scene().camera.is_none().then(|| after.json().get("camera")?.as_object())??;
+    let stands = ["position", "target", "keys"].iter().any(|field| made.contains_key(*field));
+    let told =
+        "the scene had no camera: this one stands where every camera begins (:camera fit in the editor sees all)";
+    (!stands).then(|| told.to_owned())
 }
 
 /// The edit that applies all of `settings` (`PATH=VALUE`), each to the result of those before it. One that is only right after
@@ -365,7 +375,11 @@ fn refused(scene: &Path, problems: Vec<Problem>) -> Error {
 /// Splits at the first `=` outside quotes; the value is JSON if it can be read as JSON, otherwise text.
 pub fn parse(setting: &str) -> Result<(&str, Value)> {
     let Some(at) = equals(setting) else {
-        return Err(Error::Usage(format!("{setting}: write it as PATH=VALUE, a name with a space in quotes")));
+        let how = match setting.rsplit_once(' ').filter(|(path, _)| !path.contains(' ')) {
+            Some((path, value)) => format!("{path}={value}"),
+            None => "PATH=VALUE, a name with a space in quotes".to_owned(),
+        };
+        return Err(Error::Usage(format!("{setting}: write it as {how}")));
     };
     let value = &setting[at + 1..];
     // A number that JSON cannot hold must not become text.

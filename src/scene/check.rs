@@ -171,8 +171,8 @@ fn problems(scene: &Scene, over: Vec<Problem>, layers: &[Checked], rules: &Rules
     problems
 }
 
-/// Whether something in the scene changes while the time runs.
-fn moves(scene: &Scene) -> bool {
+/// Whether something in the scene changes while the time runs, as far as the document tells.
+pub fn moves(scene: &Scene) -> bool {
     let turns = scene.camera.as_ref().is_some_and(|camera| camera.turn != 0.0 || camera.keys.len() > 1);
     let in_space = |layer: &Layer| layer.technique().kind().space == Space::World;
     scene.layers.iter().any(|layer| layer.technique().moves() || turns && in_space(layer))

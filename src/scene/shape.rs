@@ -8,6 +8,7 @@ use super::VERSION;
 use super::json_schema::{is_widest, range_text};
 use super::schema::{Body, Shape};
 use crate::base::change::Change;
+use crate::base::number::written;
 use crate::base::pointer;
 use crate::base::problem::{Problem, nearest, quoted, there_are};
 use crate::base::text::counted;
@@ -131,18 +132,18 @@ impl Walk {
         }
     }
 
-    fn number(&mut self, written: &Number, whole: bool, range: Option<(f64, f64)>, unit: Option<&str>) {
-        let Some(number) = written.as_f64() else { return };
+    fn number(&mut self, own: &Number, whole: bool, range: Option<(f64, f64)>, unit: Option<&str>) {
+        let Some(number) = own.as_f64() else { return };
         match range {
             Some(range @ (min, max)) if !(min..=max).contains(&number) => {
                 let side = if number < min { "small" } else { "large" };
                 let range = range_text(Some(range), unit).unwrap_or_default();
-                self.report(format!("{written} is too {side}: {range}"), None);
+                self.report(format!("{} is too {side}: {range}", written(own)), None);
             }
-            _ if whole && written.is_f64() => {
+            _ if whole && own.is_f64() => {
                 let hint =
                     (number.fract() == 0.0 && number.abs() < 1e18).then(|| format!("write it as {}", number as i64));
-                self.report(format!("expected a whole number, found {written}"), hint);
+                self.report(format!("expected a whole number, found {}", written(own)), hint);
             }
             _ => {}
         }
@@ -251,7 +252,7 @@ pub fn found(value: &Value) -> String {
     match value {
         Value::Null => "null".into(),
         Value::Bool(value) => value.to_string(),
-        Value::Number(number) => number.to_string(),
+        Value::Number(number) => written(number),
         Value::String(text) => format!("the text {}", quoted(text)),
         Value::Array(items) if items.iter().all(Value::is_number) => {
             format!("a list of {}", counted(items.len(), "number"))

@@ -150,6 +150,8 @@ pub enum Effect {
     View(Option<String>),
     /// Let the windows look from there, or by the scene's camera again.
     Look(Option<Box<Camera>>),
+    /// Ask the windows for what they have not told yet.
+    Ask,
     /// Open a picture in another program.
     EditImage(PathBuf),
     /// Draw the whole screen again.

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use super::fields::VectorField;
-use super::{Options, picture};
+use super::{Options, mesh, picture};
 use crate::base::budget::Budget;
 use crate::base::mesh::Mesh;
 use crate::base::picture::Picture;
@@ -95,11 +95,10 @@ pub fn sizes(scene_path: &Path, scene: &Scene, options: &Options) -> (BTreeMap<S
     headers(scene_path, scene, options, |_| true)
 }
 
-/// Warnings on the files that `after` names, and `before` not at the same place, and that cannot be read.
+/// The problems of the files that `after` names, and `before` not at the same place, as far as their beginnings tell.
 pub fn unread(scene_path: &Path, [before, after]: [&Document; 2], options: &Options) -> Vec<Problem> {
     let is_new = |at: &str| before.json().pointer(at) != after.json().pointer(at);
-    let (_, problems) = headers(scene_path, after.scene(), options, |named| is_new(&named.at));
-    problems.into_iter().map(|problem| Problem { severity: Severity::Warning, ..problem }).collect()
+    headers(scene_path, after.scene(), options, |named| is_new(&named.at)).1
 }
 
 /// [`sizes`] of those that are `wanted`.
@@ -109,24 +108,30 @@ fn headers(
     options: &Options,
     wanted: impl Fn(&Named) -> bool,
 ) -> (BTreeMap<String, (usize, usize)>, Vec<Problem>) {
-    let measure = |named: &Named| {
-        let file = super::paths::open(scene_path, named.path, options)?;
-        picture::header(file, named.path, &options.limits)
-    };
+    let open = |path: &str| super::paths::open(scene_path, path, options);
+    let measure = |path: &str| picture::header(open(path)?, path, &options.limits);
     let mut sizes = BTreeMap::new();
     let mut problems = Vec::new();
     for named in named::pictures(scene).into_iter().filter(&wanted) {
-        match measure(&named) {
+        match measure(named.path) {
             Ok(size) => drop(sizes.insert(named.key.to_owned(), size)),
             Err(error) => problems.push(problem(&named, error)),
         }
     }
-    for named in named::meshes(scene).into_iter().chain(named::fields(scene)).filter(&wanted) {
-        problems.extend(super::paths::open(scene_path, named.path, options).err().map(|error| problem(&named, error)));
+    for named in named::meshes(scene).into_iter().filter(&wanted) {
+        let begins = open(named.path).and_then(|file| mesh::expect(&file, named.path));
+        problems.extend(begins.err().map(|error| problem(&named, error)));
+    }
+    for named in named::fields(scene).into_iter().filter(&wanted) {
+        problems.extend(open(named.path).err().map(|error| problem(&named, error)));
     }
     for (named, frames) in named::clips(scene_path, scene).into_iter().filter(|(named, _)| wanted(named)) {
-        let opened = frames.iter().try_for_each(|path| super::paths::open(scene_path, path, options).map(drop));
-        problems.extend(opened.err().map(|error| problem(&named, error)));
+        let is_video = scene.clips[named.key].frames().is_ok_and(|frames| frames.is_video());
+        let begins = |path: &String| match is_video {
+            true => super::sources::expect_video(&open(path)?, path),
+            false => open(path).map(drop),
+        };
+        problems.extend(frames.iter().try_for_each(begins).err().map(|error| problem(&named, error)));
     }
     (sizes, problems)
 }

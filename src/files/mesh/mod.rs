@@ -50,9 +50,33 @@ const FOREIGN: &[(&str, &[&[u8]], &str)] = &[
     (".gz", &[b"\x1f\x8b"], "compressed by gzip"),
 ];
 
-/// Whether a file called `place` that begins with `start` is a mesh that is read.
-pub(super) fn begins(start: &[u8], place: &str) -> bool {
-    kind(start, place).is_ok()
+/// What a file called `place` is that begins with `start`, if it is a scene or a mesh that is read, and what to do with it
+/// where something else is wanted.
+pub(super) fn instead(start: &[u8], place: &str) -> Option<[&'static str; 2]> {
+    match () {
+        () if is_scene(start) => Some(SCENE),
+        () if kind(start, place).is_ok() => {
+            Some(["a mesh", "call it .obj, .glb or .gltf, and list it among the scene's meshes"])
+        }
+        () => None,
+    }
+}
+
+/// Refuses an open file that does not begin as a mesh does; it stays where it was: at its beginning.
+///
+/// # Errors
+/// What it is, and what to do.
+pub(super) fn expect(file: &File, place: &str) -> Result<()> {
+    kind(&input::start(file, place)?, place).map(drop)
+}
+
+const SCENE: [&str; 2] = ["a Plica scene", "plica edit opens it"];
+
+/// Whether a file begins as a scene does, and not as a glTF, which is such JSON too.
+fn is_scene(start: &[u8]) -> bool {
+    let text = input::text(start).trim_ascii_start();
+    let names = |key: &str| String::from_utf8_lossy(text).contains(key);
+    text.starts_with(b"{") && names("\"plica\"") && !names("\"asset\"")
 }
 
 /// Whether a file called `name`, in lower case, is a mesh or a scene of a kind that is not read.
@@ -181,11 +205,11 @@ fn kind(start: &[u8], place: &str) -> Result<Format> {
     let text = input::text(start);
     let is_text = !start.contains(&0);
     let first = text.trim_ascii_start().first();
+    if is_scene(start) {
+        let [what, cure] = SCENE;
+        return Err(Error::at(place, format!("is {what}, not a mesh")).cure(cure));
+    }
     if foreign.is_none() && first == Some(&b'{') {
-        let names = |key: &str| String::from_utf8_lossy(text).contains(key);
-        if names("\"plica\"") && !names("\"asset\"") {
-            return Err(Error::at(place, "is a Plica scene, not a mesh").cure("plica edit opens it"));
-        }
         return Ok(Format::Gltf);
     }
     if foreign.is_none() && is_text && (obj::begins(text) || name.ends_with(".obj") && first != Some(&b'<')) {

@@ -43,6 +43,9 @@ const KINDS: &[(&[u8], Kind, &str)] = &[
 
 const READ: &str = "Plica reads PNG, JPEG, TIFF, WebP, GIF, OpenEXR, Radiance HDR, BMP, TGA, PNM, QOI, DDS and ICO";
 
+/// What is said of a file that tells nothing else of itself.
+pub(in crate::files) const UNKNOWN: &str = "is not a picture of a known kind";
+
 /// A kind that is not read: its name, and the command that converts `IN` to `OUT` (with an extension).
 struct Foreign {
     name: &'static str,
@@ -109,7 +112,7 @@ pub(super) fn kind(start: &[u8], file: &mut File, place: &str) -> Result<Kind> {
     if is_tga(start, file, place) {
         return Ok(Kind::Plain(ImageFormat::Tga));
     }
-    Err(Error::at(place, "is not a picture of a known kind").cure(READ))
+    Err(Error::at(place, UNKNOWN).cure(READ))
 }
 
 /// What a picture is that begins with `start`, as "a PNG picture".

@@ -111,7 +111,10 @@ fn open(file: File, place: &str, limits: &Limits) -> Result<Undecoded> {
     let mut start = Vec::new();
     (&mut file).take(kinds::LOOKED_AT).read_to_end(&mut start).map_err(failed)?;
     let length = file.seek(SeekFrom::End(0)).map_err(failed)?;
-    let kind = kinds::kind(&start, &mut file, place)?;
+    let kind = kinds::kind(&start, &mut file, place).map_err(|unknown| match mesh::instead(&start, place) {
+        Some([what, cure]) => Error::at(place, format!("is {what}, not a picture")).cure(cure),
+        None => unknown,
+    })?;
     file.rewind().map_err(failed)?;
     match kind {
         Kind::Png => png::open(file, place, limits),

@@ -170,7 +170,11 @@ pub fn with_sources(layer: &WaterfallLayer, sources: &Sources) -> Vec<Problem> {
     let (width, height) = clip.size_px();
     if width < side || height < side {
         let message = format!("sprites of {side} px do not fit in the clip's {width} x {height}");
-        problems.push(Problem::error("/sprites/size", message).hint("make them smaller"));
+        let hint = match (width.min(height) as u32) / SIDE_STEP * SIDE_STEP {
+            0 => format!("take a clip of {SIDE_STEP} x {SIDE_STEP} at least"),
+            most => format!("make it {most}"),
+        };
+        problems.push(Problem::error("/sprites/size", message).hint(hint));
         return problems;
     }
     let needed = (sprites.track_frames() - 1).max(sprites.step as usize) + 1;
@@ -180,7 +184,7 @@ pub fn with_sources(layer: &WaterfallLayer, sources: &Sources) -> Vec<Problem> {
             "{keys} keys {step} frames apart need {needed} frames; the clip \"{name}\" has {}",
             clip.frames.len()
         );
-        problems.push(Problem::error("/sprites", message).hint("lower keys or step, or make the clip longer"));
+        problems.push(Problem::error("/sprites", message).hint(shorter(sprites, clip.frames.len())));
     }
     let picks = sprites.picks.iter().enumerate();
     problems.extend(picks.flat_map(|(i, pick)| {
@@ -190,17 +194,28 @@ pub fn with_sources(layer: &WaterfallLayer, sources: &Sources) -> Vec<Problem> {
     problems
 }
 
+/// Which step, or which number of keys, a clip of so many frames is long enough for.
+fn shorter(sprites: &Sprites, frames: usize) -> String {
+    let apart = frames.saturating_sub(1) as u32;
+    match apart / sprites.keys.saturating_sub(1).max(1) {
+        0 if apart == 0 => "take a longer clip".to_owned(),
+        0 => format!("make keys {frames} and step 1"),
+        step => format!("make step {step}"),
+    }
+}
+
 fn of_pick(sprites: &Sprites, pick: &Pick, clip: &Clip) -> Vec<Problem> {
     let side = f64::from(sprites.size);
     let (width, height) = clip.size_px();
     let mut problems = Vec::new();
     let outside = pick.at.into_iter().zip([width, height]).find_map(|(at, size)| {
         let edge = (at - side / 2.0 + 0.5).floor();
-        (edge < 0.0 || edge + side > size as f64).then_some((edge, edge + side, size))
+        (edge < 0.0 || edge + side > size as f64).then_some((edge, edge + side, size as f64))
     });
     if let Some((from, to, size)) = outside {
         let message = format!("its window, {from} px to {to} px, leaves the clip's {size} px");
-        problems.push(Problem::error("", message).hint("move it inside"));
+        let hint = format!("its middle can be from {} to {} px", side / 2.0, size - side / 2.0);
+        problems.push(Problem::error("", message).hint(hint));
     }
     let (frame, count) = (pick.frame as usize, clip.frames.len());
     let frames = if pick.track { sprites.track_frames() } else { 1 };

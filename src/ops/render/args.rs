@@ -2,12 +2,16 @@
 
 use std::path::PathBuf;
 
+use crate::base::error::Result;
 use crate::base::pixels::Rgba;
 use crate::export::animation::formats::{kept, table};
 use crate::export::animation::matrix::Matrix;
+use crate::export::animation::range;
+use crate::export::numbered::is_one_picture;
+use crate::ops::Context;
 use crate::ops::scene_options::SceneOptions;
 use crate::ops::writing::Replacing;
-use crate::scene::compared;
+use crate::scene::{Scene, check, compared};
 
 /// Render frames to numbered files, an animation or a stream
 #[derive(clap::Args)]
@@ -68,6 +72,19 @@ const LINE: &str = "Video by a line of your own (from 720 lines on; below them s
     -vf format=yuv420p,setparams=colorspace=bt709:color_primaries=bt709:color_trc=iec61966-2-1:range=tv \\
     -colorspace bt709 -color_primaries bt709 -color_trc iec61966-2-1 -color_range tv \\
     -c:v libx264 -crf 16 out.mp4";
+
+/// The frames that are asked for; of a scene in which nothing moves its one picture, where there is room for one alone.
+pub(super) fn wanted(args: &Args, scene: &Scene, context: &mut Context) -> Result<Vec<u64>> {
+    let all = scene.timeline.frames();
+    match &args.frames {
+        Some(text) => range::parse(text, all),
+        None if all > 1 && is_one_picture(&args.output) && !check::moves(scene) => {
+            context.messages.say("nothing moves in the scene: this is its one picture");
+            Ok(vec![0])
+        }
+        None => Ok((0..all).collect()),
+    }
+}
 
 /// A frame of the scene, and the number of its file.
 pub(super) type Numbered = (u64, u64);

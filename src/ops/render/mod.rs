@@ -10,7 +10,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-use args::{Numbered, frame_bytes, numbered};
+use args::{Numbered, frame_bytes, numbered, wanted};
 
 use super::demo::quoted;
 use super::opened::{Opened, Unloaded};
@@ -43,10 +43,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let begun = Instant::now();
     let read = Unloaded::read(&args.scene, &args.options, context)?;
     let timeline = read.document.scene().timeline.clone();
-    let frames = match &args.frames {
-        Some(text) => range::parse(text, timeline.frames())?,
-        None => (0..timeline.frames()).collect(),
-    };
+    let frames = wanted(&args, read.document.scene(), context)?;
     let numbered = numbered(&args, &frames);
     let written = Arc::new(AtomicU64::new(0));
     let (target, place) = target(&args, &read, &numbered, &written, context)?;

@@ -2,10 +2,9 @@
 
 use std::time::Instant;
 
-use super::args::{Args, Numbered, frame_bytes, numbered};
+use super::args::{Args, Numbered, frame_bytes, numbered, wanted};
 use crate::base::error::{Error, Result};
 use crate::base::pixels::{Frame, Linear};
-use crate::export::animation::range;
 use crate::export::passes::Files;
 use crate::files::outputs;
 use crate::layers::parts::pass::COLOR;
@@ -33,10 +32,7 @@ pub fn run(args: &Args, context: &mut Context) -> Result<()> {
     let asked = Asked::parse(args.pass.as_deref().unwrap_or(COLOR.name), &scene);
     let asked = asked.map_err(|what| Error::Usage(format!("--pass: {what}")))?;
     context.say_all(&asked.emptiness(&scene).into_iter().chain(unsampled(args.samples, &asked)).collect::<Vec<_>>());
-    let frames = match &args.frames {
-        Some(text) => range::parse(text, scene.timeline.frames())?,
-        None => (0..scene.timeline.frames()).collect(),
-    };
+    let frames = wanted(args, &scene, context)?;
     let todo: Vec<Numbered> = numbered(args, &frames);
     let mut guard = args.replacing.guard(&args.scene, &scene, context);
     let files = Files::new(&args.output, &todo.iter().map(|(_, number)| *number).collect::<Vec<_>>(), &mut guard)?;

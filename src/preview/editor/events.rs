@@ -13,6 +13,11 @@ pub enum Event {
     Status,
     /// What a window says. Its text is one line without control characters.
     Said(ToEditor),
+    /// The windows have told what they had not before the question, but for so many that are silent.
+    Answered {
+        /// How many windows did not answer in time.
+        silent: usize,
+    },
     /// A script asks for a change.
     Edit(Asked),
 }

@@ -52,6 +52,8 @@ pub(in crate::preview) struct State {
 pub(in crate::preview) struct Peer {
     pub outbox: Outbox,
     pub hang_up: HangUp,
+    /// The number of the question that it has answered last.
+    pub answered: u64,
 }
 
 #[derive(Default)]
@@ -167,6 +169,15 @@ impl Shared {
         waited.unwrap_or_else(PoisonError::into_inner).0
     }
 
+    /// Waits until all windows have answered a question, but not longer than this, and tells how many have not.
+    pub fn answers(&self, nth: u64, most: Duration) {
+        let owes = |peer: &&Peer| peer.answered < nth;
+        let state = self.wait(most, |state| state.closing || !state.peers.values().any(|peer| owes(&peer)));
+        let silent = state.peers.values().filter(owes).count();
+        drop(state);
+        (self.deliver)(Event::Answered { silent });
+    }
+
     /// Waits for a window to join by itself, or for the editor to close; returns whether either happened in time.
     pub fn a_window_comes(&self, most: Duration) -> bool {
         let state = self.wait(most, |state| state.closing || !state.peers.is_empty());
@@ -219,7 +230,7 @@ impl Shared {
             let mut state = self.lock();
             let (latest, id) = (state.latest.clone(), state.next_peer);
             state.next_peer += 1;
-            state.peers.insert(id, Peer { outbox: Outbox::greeted(&latest), hang_up });
+            state.peers.insert(id, Peer { outbox: Outbox::greeted(&latest), hang_up, answered: 0 });
             (latest, id)
         };
         let hello = hello(scene, &latest);
@@ -298,6 +309,12 @@ impl Shared {
                 }
                 ToEditor::WantScene => self.outbox(id, Outbox::want_scene),
                 ToEditor::Want { hash, offset } => self.outbox(id, |outbox| outbox.want(hash, offset)),
+                ToEditor::Answer(nth) => {
+                    self.heard(said);
+                    self.change(|state| {
+                        state.peers.get_mut(&id).into_iter().for_each(|peer| peer.answered = nth);
+                    });
+                }
                 ToEditor::Alive => {}
                 ToEditor::Hello { .. } | ToEditor::Edit { .. } => {
                     return Err(Error::at("link", "a window said what only a script says"));

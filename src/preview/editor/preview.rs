@@ -22,6 +22,8 @@ use crate::scene::edit::Edit;
 
 /// How long the editor waits at its end for windows to leave.
 const FAREWELL: Duration = Duration::from_millis(300);
+/// How long a question waits for the windows: a drawing that the CPU does for a GPU takes a second or two.
+const ANSWER: Duration = Duration::from_secs(4);
 /// How long a window that lost an earlier editor has to come back before a new one is opened.
 const ORPHANS: Duration = Duration::from_secs(1);
 
@@ -35,6 +37,8 @@ pub struct Preview {
     door: Option<Door>,
     /// How often windows were told where to look from.
     looked: u64,
+    /// How often they were asked for what they have not told.
+    asked: u64,
 }
 
 impl Preview {
@@ -47,7 +51,8 @@ impl Preview {
     ) -> Preview {
         let shared = Arc::new(Shared::new(Latest::new(document.clone(), revision), Box::new(deliver)));
         let scene = std::path::absolute(scene).unwrap_or_else(|_| scene.to_owned());
-        let mut preview = Preview { shared, scene, options: Options::default(), keeper: None, door: None, looked: 0 };
+        let mut preview =
+            Preview { shared, scene, options: Options::default(), keeper: None, door: None, looked: 0, asked: 0 };
         if let Err(error) = preview.listen() {
             preview.shared.lock().refused = Some(error.to_string());
         }
@@ -87,6 +92,17 @@ impl Preview {
     pub fn look(&mut self, camera: Option<Camera>) {
         self.looked += 1;
         self.say(FromEditor::Look { camera, nth: self.looked });
+    }
+
+    /// Asks the windows for what they have not told yet; [`Event::Answered`] comes when they have, or after a while.
+    ///
+    /// # Errors
+    /// There can be no thread that waits for them.
+    pub fn ask(&mut self) -> Result<()> {
+        self.asked += 1;
+        let (shared, nth) = (self.shared.clone(), self.asked);
+        self.say(FromEditor::Ask(nth));
+        thread("link answers", move || shared.answers(nth, ANSWER))
     }
 
     /// The animation has run on to `time` (scene time, in seconds) by itself, as it does in the windows: those that join

@@ -153,7 +153,7 @@ fn said(state: &State) -> (String, Color) {
     } else if let Some(work) = state.work.filter(|work| work.is_long) {
         Some(work.to_string())
     } else if state.drawing && !state.transport.playing {
-        Some("drawing the frame".to_owned())
+        Some(format!("drawing {}", state.pass.as_ref().map_or("the frame".into(), |pass| format!("the pass {pass}"))))
     } else if let Some(why) = &state.no_pass {
         Some(why.clone())
     } else if words.told.is_some() {
@@ -340,7 +340,9 @@ mod tests {
         state.work = Some(Work { what: "synthesising", is_long: true, percent: Some(34) });
         assert_eq!(said(&state).0, "synthesising: 34 %");
         assert_eq!(said(&State { work: state.work, ..State::for_tests() }).0, "synthesising: 34 %", "later ones too");
-        assert_eq!(said(&State { drawing: true, ..State::for_tests() }).0, "drawing the frame");
+        for (pass, told) in [(None, "drawing the frame"), (Some("depth".to_owned()), "drawing the pass depth")] {
+            assert_eq!(said(&State { drawing: true, pass, ..State::for_tests() }).0, told);
+        }
         state.words.progress = Some("fetching sea.jpg: 34 %".into());
         assert_eq!(said(&state).0, "fetching sea.jpg: 34 %");
         state.words.progress = None;

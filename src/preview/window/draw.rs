@@ -34,14 +34,19 @@ impl App {
         } else if !was_hidden {
             self.report();
         }
+        self.tell_view();
+        self.tell_drag();
+        self.owed.take().into_iter().for_each(|reply| self.reply(reply));
+        Ok(())
+    }
+
+    /// Tells the editor where the window looks from, if that has changed.
+    pub(super) fn tell_view(&mut self) {
         if self.told_view != self.state.own {
             self.told_view = self.state.own;
             self.hurry.changed(Instant::now());
             self.reply(Gesture::Camera(self.state.own_camera()));
         }
-        self.tell_drag();
-        self.owed.take().into_iter().for_each(|reply| self.reply(reply));
-        Ok(())
     }
 
     /// A drawing is on the screen.

@@ -111,6 +111,10 @@ impl App {
             FromEditor::Cursor(at) => self.state.cursor = at.map(Point::from),
             FromEditor::Transport(transport) => self.join_in(transport),
             FromEditor::Look { camera, .. } => self.state.look_from(camera.as_ref()),
+            FromEditor::Ask(nth) => {
+                self.tell_view();
+                self.reply(ToEditor::Answer(nth));
+            }
             FromEditor::View(command) if command == LOSE_DEVICE => {
                 self.opened.iter().for_each(|opened| opened.gpu.device().raw.destroy());
             }

@@ -29,7 +29,8 @@ pub fn draw(canvas: &mut Canvas, state: &State, letters: &Letters, free: Rect) {
         return;
     }
     let needs = |legend| overlays().any(|overlay| overlay.legend == Some(legend) && state.shows(overlay.name));
-    let wheel = needs(Legend::Colors).then(|| Wheel::new(state, letters));
+    // Where nothing jumps there are no colors to explain.
+    let wheel = (needs(Legend::Colors) && state.longest > 0.0).then(|| Wheel::new(state, letters));
     let bar = needs(Legend::Arrows).then(|| ScaleBar::new(state, letters)).flatten();
     let sizes = [wheel.as_ref().map(|wheel| wheel.size), bar.as_ref().map(|bar| bar.size)];
     let [wheel_at, bar_at] = places(sizes, free, MARGIN_PX * state.scale);

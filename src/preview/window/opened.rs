@@ -249,18 +249,22 @@ impl OpenWindow {
         let much = show.has_sprites() || show.frames.takes_long();
         let by_cpu = self.gpu.by_cpu(&show.frames).is_some() || much && self.gpu.device().is_software();
         let asked = asked.ok().flatten().or_else(|| by_cpu.then_some(Asked::FRAME));
-        self.by_cpu = asked.is_some();
+        let was_by_cpu = std::mem::take(&mut self.by_cpu);
+        state.drawing = false;
         let left_out = state.thin.left_out();
         let frame = (&*thinned(frame.0, left_out), frame.1);
         if let Some(asked) = asked {
             let times = (frame.1, other.as_ref().map(|(_, t)| *t), state.shows("view-still"));
             let wanted = For { asked, revision, own: state.own, times, left_out };
-            let textures = self.passes.follow(&self.gpu, &wanted, (frame, other), wake)?;
+            let textures = self.passes.follow(&self.gpu, &wanted, (frame, other.clone()), wake)?;
             state.drawing = self.passes.is_making();
-            let scale = show.frame_scale / self.passes.each.max(1) as f64;
-            return textures.map_or_else(|| self.nothing(), |(frame, other)| Ok(Pictures { frame, other, scale }));
+            // Until a pass is there, the frame that was shown stays.
+            self.by_cpu = by_cpu || was_by_cpu || !state.drawing;
+            if self.by_cpu {
+                let scale = show.frame_scale / self.passes.each.max(1) as f64;
+                return textures.map_or_else(|| self.nothing(), |(frame, other)| Ok(Pictures { frame, other, scale }));
+            }
         }
-        state.drawing = false;
         let (frame, other) = self.gpu.textures(frame, other.as_ref().map(|(synth, t)| (&**synth, *t)))?;
         Ok(Pictures { frame, other, scale: show.frame_scale })
     }

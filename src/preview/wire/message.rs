@@ -59,6 +59,8 @@ pub enum FromEditor {
         /// How often windows have been told to look somewhere: the same place twice is not the same message.
         nth: u64,
     },
+    /// Asks for what the window has not told yet, as while it draws: it tells that, and answers with the number.
+    Ask(u64),
     /// An overlay or zoom command, by name.
     View(String),
     /// The overlay and zoom commands in force, for a window that was not there when they were given.
@@ -128,6 +130,8 @@ pub enum ToEditor {
     },
     /// See there: the link passes it on as it is.
     Gesture(Gesture),
+    /// Answers a [`FromEditor::Ask`]: what happened in the window before it is told.
+    Answer(u64),
     /// A window on another machine requests a piece of a file that [`FromEditor::Images`] announced.
     Want {
         /// SHA-256 of the file, in hexadecimal.
@@ -209,7 +213,8 @@ impl FromEditor {
             FromEditor::Problems(problems) => Meaning::Link(OfTheLink::Problems(problems)),
             FromEditor::Bye(reason) => Meaning::Link(OfTheLink::Bye(reason)),
             FromEditor::Selection(_) | FromEditor::Transport(_) | FromEditor::Look { .. } => Meaning::Windows(self),
-            FromEditor::Cursor(_) | FromEditor::View(_) | FromEditor::Views(_) => Meaning::Windows(self),
+            FromEditor::Cursor(_) | FromEditor::Ask(_) => Meaning::Windows(self),
+            FromEditor::View(_) | FromEditor::Views(_) => Meaning::Windows(self),
             // What begins the link is heard before; what scripts are told, windows are not.
             FromEditor::Hello { .. } | FromEditor::Alive | FromEditor::Edited(_) => Meaning::Nothing,
         }
@@ -228,7 +233,7 @@ impl FromEditor {
             // The document, and what is selected, playing or wrong in it.
             FromEditor::Hello { .. } | FromEditor::Patch { .. } | FromEditor::Scene { .. } => Some(self),
             FromEditor::Selection(_) | FromEditor::Transport(_) | FromEditor::Look { .. } => Some(self),
-            FromEditor::Cursor(_) => Some(self),
+            FromEditor::Cursor(_) | FromEditor::Ask(_) => Some(self),
             FromEditor::Notice(_) | FromEditor::Problems(_) => Some(self),
             // The link and the files that it brings.
             FromEditor::Images(_) | FromEditor::Piece { .. } | FromEditor::Alive => Some(self),
@@ -250,7 +255,7 @@ impl ToEditor {
             // Numbers alone, or what the link answers.
             ToEditor::Gesture(Gesture::Pointer { .. } | Gesture::Camera(_) | Gesture::Transport(_)) => self,
             ToEditor::Hello { .. } | ToEditor::Ack { .. } | ToEditor::WantScene | ToEditor::Want { .. } => self,
-            ToEditor::Alive | ToEditor::Edit { .. } => self,
+            ToEditor::Answer(_) | ToEditor::Alive | ToEditor::Edit { .. } => self,
         }
     }
 
@@ -261,7 +266,7 @@ impl ToEditor {
             ToEditor::Report { fps, .. } => fps.is_finite(),
             ToEditor::Gesture(gesture) => gesture.is_finite(),
             ToEditor::Hello { .. } | ToEditor::WantScene | ToEditor::Want { .. } => true,
-            ToEditor::Alive | ToEditor::Edit { .. } => true,
+            ToEditor::Answer(_) | ToEditor::Alive | ToEditor::Edit { .. } => true,
         }
     }
 }

@@ -68,6 +68,7 @@ fn every_message_comes_back_as_it_was_sent() {
         Gesture::Pointer { x: -1.5, y: 2.0 }.into(),
         Gesture::Command(text).into(),
         ToEditor::Want { hash: "00ff".into(), offset: 1 << 40 },
+        ToEditor::Answer(3),
         ToEditor::Alive,
         ToEditor::Edit { revision: 1, patch: patch() },
     ];

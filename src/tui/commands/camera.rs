@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 use serde_json::{Value, json};
 
-use super::command::{Call, Command, Done, command};
+use super::command::{Call, Command, Done, Table, command};
 use crate::base::geometry::{Xyz, farther};
 use crate::base::number;
 use crate::base::problem::{Problem, Severity};
@@ -29,6 +29,8 @@ pub const COMMANDS: &[Command] = &[command(
 )
 .inside()];
 
+/// What is said while the windows are asked.
+const ASKING: &str = "asking the window";
 /// Why no camera sees anything of layers whose files are there.
 const NOTHING: &str = "nothing is in space: all of it is without a size (make pose.scale 1, or give it points)";
 /// Where a new camera stands.
@@ -40,24 +42,50 @@ const SAME_TIME: f64 = 1e-6;
 
 fn camera(state: &mut State, call: &Call) -> Done {
     match call.text {
-        "take" => take(state, call),
-        "key" => key(state, call),
-        _ => see_all(state, call),
+        "fit" => see_all(state, call.table),
+        word if state.outside.window.is_empty() => of_window(state, call.table, word),
+        // A window that draws slowly has not told its last keys yet.
+        _ if state.outside.work.is_some() => Err("something is running already: Esc ends it".into()),
+        word => {
+            (state.outside.asking, state.outside.work) = (Some(word.to_owned()), Some(ASKING.to_owned()));
+            state.ask(Effect::Ask);
+            Ok(())
+        }
     }
 }
 
-fn take(state: &mut State, call: &Call) -> Done {
+/// The windows have told where they look from, but for so many that have not.
+pub fn answered(state: &mut State, table: &'static Table, silent: usize) {
+    let Some(word) = state.outside.asking.take() else { return };
+    state.outside.work = None;
+    if silent > 0 {
+        return state.complain("the window does not tell where it looks from: try again once it has drawn");
+    }
+    if let Err(why) = of_window(state, table, &word) {
+        state.complain(why);
+    }
+}
+
+/// Does what the camera of the window is wanted for.
+fn of_window(state: &mut State, table: &'static Table, word: &str) -> Done {
+    match word {
+        "take" => take(state, table),
+        _ => key(state, table),
+    }
+}
+
+fn take(state: &mut State, table: &'static Table) -> Done {
     let own = state.outside.camera.clone();
     let own = own.ok_or(match state.outside.window.is_empty() {
         true => "there is no window to take the camera from: :view opens one, and plica view elsewhere joins",
         false => "the window moved last shows the scene's camera: move it first (drag with the middle button)",
     })?;
-    write(state, call, rounded(standing(&own)), "the window's camera is the scene's now")
+    write(state, table, rounded(standing(&own)), "the window's camera is the scene's now")
 }
 
 /// Sets the window's view, or that of the scene, as a key at the present time. What the other keys do not name they get as it is at
 /// their times, since it would be that of the new key there.
-fn key(state: &mut State, call: &Call) -> Done {
+fn key(state: &mut State, table: &'static Table) -> Done {
     let time = state.play.time;
     let scene = state.document().scene().camera.clone();
     let scene = scene.ok_or("the scene has no camera: :camera fit makes one")?;
@@ -83,7 +111,7 @@ fn key(state: &mut State, call: &Call) -> Done {
     keys.sort_by(|a, b| a.at.total_cmp(&b.at));
     let alone = if keys.len() == 1 { "; with one key the camera stands still" } else { "" };
     let keys = serde_json::to_value(keys).map_err(|error| error.to_string())?;
-    call.obey(state, &format!("set camera.keys={}", rounded(keys)))?;
+    table.obey(state, &format!("set camera.keys={}", rounded(keys)), None)?;
     state.say(format!("the camera has a key at {}{alone}", short(time)));
     Ok(())
 }
@@ -97,7 +125,7 @@ pub fn eye(state: &State) -> Result<Camera, String> {
     state.outside.camera.clone().or(scene).ok_or_else(|| "the scene has no camera: :camera fit makes one".into())
 }
 
-fn see_all(state: &mut State, call: &Call) -> Done {
+fn see_all(state: &mut State, table: &'static Table) -> Done {
     let before = state.document().scene().camera.clone();
     let of = before.clone().unwrap_or_default();
     let ([position, target, up], fov) = of.view(state.play.time);
@@ -111,7 +139,7 @@ fn see_all(state: &mut State, call: &Call) -> Done {
         // A layer in space asks for a camera before there is anything to see.
         (Err(why), None) => {
             let said = format!("the scene has a camera, but {why}");
-            return write(state, call, standing(&Camera::default()), &said);
+            return write(state, table, standing(&Camera::default()), &said);
         }
     };
     let stands = before.is_some() && of.keys.is_empty() && of.turn == 0.0;
@@ -122,7 +150,7 @@ fn see_all(state: &mut State, call: &Call) -> Done {
     }
     let [position, target] = seen.map(Into::into);
     let fitted = Camera { position, target, up: up.into(), fov, ..Camera::default() };
-    write(state, call, standing(&fitted), "the camera sees all that is in space")
+    write(state, table, standing(&fitted), "the camera sees all that is in space")
 }
 
 /// A camera that stands still, without what is so anyway.
@@ -176,9 +204,9 @@ fn told(scene: &Scene, ways: &[DVec3]) -> Option<Vec<f64>> {
 }
 
 /// Makes a camera that stands still the scene's; says so, and what is lost by it.
-fn write(state: &mut State, call: &Call, camera: Value, said: &str) -> Done {
+fn write(state: &mut State, table: &'static Table, camera: Value, said: &str) -> Done {
     let before = state.document().scene().camera.clone().unwrap_or_default();
-    call.obey(state, &format!("set camera={camera}"))?;
+    table.obey(state, &format!("set camera={camera}"), None)?;
     // Windows that look from elsewhere would not show it.
     state.ask(Effect::Look(None));
     let keys = (!before.keys.is_empty()).then(|| counted(before.keys.len(), "key"));

@@ -171,6 +171,10 @@ fn back(state: &mut State, call: &Call) -> Done {
     if call.count.is_some() {
         return Ok(());
     }
+    if state.outside.asking.take().is_some() {
+        state.outside.work = None;
+        return Ok(());
+    }
     let piping = state.outside.piping.is_some();
     if piping || !state.cursor.unselect() && state.outside.work.is_some() {
         state.ask(Effect::Cancel);

@@ -10,7 +10,7 @@ use crate::tui::text::plain;
 use crate::tui::text::said::quoted;
 use ratatui::layout::Position;
 
-use super::{conflicts, picture, piping, tutor};
+use super::{camera, conflicts, picture, piping, tutor};
 use crate::preview::editor::{self, Asked};
 use crate::preview::wire::message::{Gesture, ToEditor};
 use crate::tui::commands;
@@ -79,6 +79,7 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
 fn hear(state: &mut State, event: editor::Event) {
     match event {
         editor::Event::Said(ToEditor::Gesture(gesture)) => follow_window(state, gesture),
+        editor::Event::Answered { silent } => camera::answered(state, &commands::TABLE, silent),
         editor::Event::Edit(asked) => answer(state, asked),
         // The link has heard it. The loop on a screen asks for the status after every event.
         editor::Event::Said(_) | editor::Event::Status => {}

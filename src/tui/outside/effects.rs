@@ -80,6 +80,11 @@ impl Editor {
             }
             Effect::View(Some(command)) => self.preview.view(&command),
             Effect::Look(camera) => self.preview.look(camera.map(|camera| *camera)),
+            Effect::Ask => {
+                if let Err(error) = self.preview.ask() {
+                    self.state.complain(error.to_string());
+                }
+            }
             Effect::Redraw => self.screen.iter_mut().for_each(|screen| drop(terminal::forget(screen))),
             Effect::Suspend => self.suspend(),
             Effect::Quit => self.leaving = true,

@@ -112,12 +112,13 @@ fn right(state: &State, room: u16) -> String {
     }
     let mut facts = facts(state);
     if state.picture.synthesising {
-        parts.push(state.picture.read.map_or("field ...".into(), |percent| format!("files {percent} %")));
+        let making = || format!("{} ...", made(state));
+        parts.push(state.picture.read.map_or_else(making, |percent| format!("files {percent} %")));
     } else if !facts.is_empty() {
         parts.append(&mut facts);
         parts.extend(state.picture.frame_ms.map(|ms| format!("frame {ms:.0} ms")));
     } else if let Some(ms) = state.picture.synth_ms {
-        parts.push(format!("field {ms:.0} ms"));
+        parts.push(format!("{} {ms:.0} ms", made(state)));
     }
     parts.push(format!("step {}", short(ten_to(state.typing.step))));
     if let Some((x, y)) = state.outside.pointer {
@@ -127,6 +128,12 @@ fn right(state: &State, room: u16) -> String {
         parts.push(plain(&state.outside.window));
     }
     parts.join("  ")
+}
+
+/// What a synthesis makes, in a word: vector fields where the scene has pictures.
+fn made(state: &State) -> &'static str {
+    let pictures = state.document().scene().layers.iter().any(|layer| layer.technique().frame_of().is_some());
+    if pictures { "field" } else { "synthesis" }
 }
 
 /// What is good to know of the layer that is shown.

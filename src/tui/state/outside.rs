@@ -34,6 +34,8 @@ pub struct Outside {
     pub dragged: Option<(String, u64)>,
     /// The camera that a window shows, where it is not the scene's: what was said last, if there are several windows.
     pub camera: Option<Camera>,
+    /// What is to be done with that once the windows have told what they had not: a word of `camera`.
+    pub asking: Option<String>,
 }
 
 /// Rows that have been sent through a program.

@@ -10,12 +10,13 @@ use crate::base::mesh::{Mesh, Vertex};
 use crate::base::problem::Problem;
 use crate::layers::parts::materials::Materials;
 use crate::layers::space::camera::Camera;
+use crate::preview::editor;
 use crate::preview::wire::message::Gesture;
 use crate::render;
 use crate::scene::check as scene;
 use crate::tui::commands::update::update;
 use crate::tui::document::open_scene::OpenScene;
-use crate::tui::events::{Event, Synthesis};
+use crate::tui::events::{Effect, Event, Synthesis};
 use crate::tui::state::State;
 use crate::tui::text::color::Depth;
 
@@ -27,6 +28,18 @@ const SCENE: &str = r#"{
 
 fn run(state: &mut State, line: &str) -> String {
     press(state, &format!(": \"{line}\" Enter"));
+    state.message.as_ref().map(|message| message.text.clone()).unwrap_or_default()
+}
+
+/// That all windows but so many have answered.
+fn answer(silent: usize) -> Event {
+    Event::Window(editor::Event::Answered { silent })
+}
+
+/// What a line says that asks the windows, of which so many are silent.
+fn asked(state: &mut State, line: &str, silent: usize) -> String {
+    run(state, line);
+    update(state, answer(silent));
     state.message.as_ref().map(|message| message.text.clone()).unwrap_or_default()
 }
 
@@ -45,14 +58,35 @@ fn the_windows_camera_is_taken_and_what_is_lost_is_told() {
     assert!(told.starts_with("there is no window"), "{told}");
     state.outside.window = "window".into();
     update(&mut state, said(Gesture::Camera(Some(own()))));
-    let told = run(&mut state, "camera take");
+    let told = asked(&mut state, "camera take", 0);
     assert!(told.contains("without its turn"), "{told}");
     let taken = json!({ "position": [1, 2, 3], "target": [0, 0.5, 0], "fov": 50 });
     assert_eq!(camera(&state), taken);
     press(&mut state, "u");
     assert_eq!(camera(&state), json!({ "turn": 90, "fov": 30 }), "one step of undo");
     update(&mut state, said(Gesture::Camera(None)));
-    assert!(run(&mut state, "camera take").starts_with("the window moved last shows"), "it is back at the scene's");
+    let told = asked(&mut state, "camera take", 0);
+    assert!(told.starts_with("the window moved last shows"), "it is back at the scene's: {told}");
+}
+
+#[test]
+fn what_the_window_has_not_told_is_waited_for() {
+    let mut state = state_of(SCENE);
+    state.outside.window = "window".into();
+    let before = camera(&state);
+    let effects = update(&mut state, Event::Line("camera take".into()));
+    assert!(matches!(effects.as_slice(), [Effect::Ask]), "{effects:?}");
+    assert_eq!((camera(&state), state.outside.work.is_some()), (before.clone(), true));
+    update(&mut state, said(Gesture::Camera(Some(own()))));
+    update(&mut state, answer(0));
+    assert_eq!((camera(&state)["fov"].clone(), state.outside.work.is_some()), (json!(50), false));
+    press(&mut state, "u");
+    let told = asked(&mut state, "camera take", 1);
+    assert!(told.starts_with("the window does not tell where it looks from: try again"), "{told}");
+    run(&mut state, "camera take");
+    press(&mut state, "Esc");
+    update(&mut state, answer(0));
+    assert_eq!((camera(&state), state.outside.work.is_some()), (before, false), "Esc ends the asking");
 }
 
 #[test]
@@ -186,7 +220,7 @@ fn other_keys_show_what_they_showed() {
     state.outside.window = "window".into();
     update(&mut state, said(Gesture::Camera(Some(own()))));
     run(&mut state, "time 0.5");
-    assert_eq!(run(&mut state, "camera key"), "the camera has a key at 0.5");
+    assert_eq!(asked(&mut state, "camera key", 0), "the camera has a key at 0.5");
     assert_eq!(camera(&state)["keys"].as_array().map(Vec::len), Some(3));
     for ((places, fov), (places_before, fov_before)) in views(&state).into_iter().zip(before) {
         assert!(fov == fov_before && places.iter().zip(places_before).all(|(a, b)| a.distance(b) < 1e-6));

@@ -1,11 +1,14 @@
 //! The nodes of a scene, and where they are.
 
-use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
+use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3, DVec4};
 
 use super::document::Node;
 use super::source::Source;
 use crate::base::error::{Error, Result};
 use crate::base::problem::quoted;
+
+/// A matrix of this precision moves points in space: single precision is rounded to less.
+const ROUNDED: f64 = 1e-6;
 
 /// The nodes of the default scene, each before its children, and where they are.
 pub(super) fn nodes<'a>(source: &'a Source) -> Result<Vec<(&'a Node, DAffine3)>> {
@@ -72,7 +75,16 @@ fn called(index: usize, node: &Node) -> String {
 
 fn own_transform(source: &Source, index: usize, node: &Node) -> Result<DAffine3> {
     if let Some(matrix) = &node.matrix {
-        return Ok(DAffine3::from_mat4(DMat4::from_cols_array(matrix)));
+        let matrix = DMat4::from_cols_array(matrix);
+        let last = matrix.row(3);
+        if !last.abs_diff_eq(DVec4::W, ROUNDED) {
+            let what =
+                format!("{}: the last row of its matrix is {last}, and is to be [0, 0, 0, 1]", called(index, node));
+            return Err(source
+                .wrong(what)
+                .cure("write translation, rotation and scale in its place, or export it again"));
+        }
+        return Ok(DAffine3::from_mat4(matrix));
     }
     let rotation = node.rotation.map_or(DQuat::IDENTITY, DQuat::from_array);
     if rotation.length_squared() == 0.0 {

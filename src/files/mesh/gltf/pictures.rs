@@ -84,7 +84,7 @@ pub(in crate::files::mesh) fn embedded<T>(
     let Some(found) = source.document.images.get(image) else { return Err(missing(&source, image, with.place)) };
     let (bytes, _share): (Cow<[u8]>, Share) = match (&found.uri, found.buffer_view) {
         (Some(Text(uri)), _) if outside(&found.uri).is_none() => {
-            let (bytes, share) = data(uri, with.place, with.budget)?;
+            let (bytes, share) = data(uri, &format!("image {image}"), with.place, with.budget)?;
             (bytes.into(), share)
         }
         (None, Some(view)) => (source.view(view)?.into(), Share::default()),

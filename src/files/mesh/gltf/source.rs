@@ -2,17 +2,18 @@
 
 use std::borrow::Cow;
 use std::cell::OnceCell;
+use std::cmp::Ordering;
 use std::fmt::Display;
 use std::path::{Component, Path};
 
-use base64::Engine;
 use base64::alphabet;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
+use base64::{DecodeError, Engine};
 
 use super::document::{Buffer, Document, Text};
 use crate::base::budget::{Budget, Share};
 use crate::base::error::{Error, Result};
-use crate::base::text::{byte_of_hex, there_are};
+use crate::base::text::{byte_of_hex, counted, there_are};
 use crate::files::Limits;
 use crate::files::mesh::input::{self, Opener};
 use crate::files::picture::kinds::command;
@@ -120,17 +121,20 @@ impl<'a> Source<'a> {
         };
         match usize::try_from(buffer.byte_length).ok().and_then(|length| bytes.get(..length)) {
             Some(bytes) => Ok(bytes),
-            None => Err(self.short_buffer(buffer, bytes.len())),
+            None => Err(self.short_buffer(index, buffer, bytes.len())),
         }
     }
 
     /// What is said of a buffer that is shorter than the file says.
-    fn short_buffer(&self, buffer: &Buffer, found: usize) -> Error {
+    fn short_buffer(&self, index: usize, buffer: &Buffer, found: usize) -> Error {
         let beside =
             buffer.uri.as_ref().filter(|Text(uri)| !uri.starts_with("data:")).and_then(|Text(uri)| self.path(uri).ok());
-        let Some(path) = beside else { return cut_short(self.with.place) };
-        let what = format!("its buffer {path} has {found} bytes, and is to have {}", buffer.byte_length);
-        Error::at(self.with.place, what).cure(format!("copy {path} again from where it came"))
+        let (called, cure) = match beside {
+            Some(path) => (path.clone(), format!("copy {path} again from where it came")),
+            None => (index.to_string(), "copy it again from where it came, or export it again".to_owned()),
+        };
+        let what = format!("its buffer {called} has {found} bytes, and is to have {}", buffer.byte_length);
+        Error::at(self.with.place, what).cure(cure)
     }
 
     fn read(&self, index: usize, buffer: &Buffer<'a>) -> Result<(Cow<'a, [u8]>, Share)> {
@@ -141,7 +145,8 @@ impl<'a> Source<'a> {
             return Ok((Cow::Borrowed(binary.ok_or_else(missing)?), Share::default()));
         };
         if uri.starts_with("data:") {
-            return data(uri, place, budget).map(|(bytes, share)| (Cow::Owned(bytes), share));
+            return data(uri, &format!("buffer {index}"), place, budget)
+                .map(|(bytes, share)| (Cow::Owned(bytes), share));
         }
         let path = self.path(uri)?;
         let of_model = |error| Error::at(place, format!("its buffer {error}"));
@@ -178,6 +183,7 @@ impl<'a> Source<'a> {
 
 /// The JSON and the binary chunk of a `.glb`.
 fn chunks<'a>(bytes: &'a [u8], place: &str) -> Result<(&'a [u8], Option<&'a [u8]>)> {
+    let wrong = |what: &str| Error::at(place, what).cure("export it again");
     let number = |at: usize| bytes.get(at..)?.first_chunk().copied().map(u32::from_le_bytes);
     let short = || cut_short(place);
     let version = number(4).ok_or_else(short)?;
@@ -185,21 +191,29 @@ fn chunks<'a>(bytes: &'a [u8], place: &str) -> Result<(&'a [u8], Option<&'a [u8]
         let what = format!("is a .glb of version {version}");
         return Err(Error::at(place, what).cure("Plica reads glTF 2.0: export it again as .glb"));
     }
-    let whole = number(8).ok_or_else(short)? as usize;
-    let chunk = |at: usize| {
-        let kind = bytes.get(at + 4..at + 8)?;
-        let contents = bytes.get(at + 8..)?.get(..number(at)? as usize)?;
-        Some((kind, contents))
+    let (whole, found) = (number(8).ok_or_else(short)? as usize, bytes.len());
+    match found.cmp(&whole) {
+        Ordering::Less => {
+            let what = format!("is cut short: it has {found} bytes, and is to have {whole}");
+            return Err(Error::at(place, what).cure("copy it again from where it came"));
+        }
+        Ordering::Greater => return Err(wrong(&format!("has {found} bytes, and says that it has {whole}"))),
+        Ordering::Equal => {}
+    }
+    let chunk = |at: usize, name: &str| {
+        let parts =
+            bytes.get(at + 4..at + 8).zip(number(at).and_then(|long| bytes.get(at + 8..)?.get(..long as usize)));
+        parts.ok_or_else(|| wrong(&format!("its chunk {name} reaches beyond its end, {whole} bytes")))
     };
-    let (kind, json) = chunk(12).ok_or_else(short)?;
+    let (kind, json) = chunk(12, "0")?;
     if kind != b"JSON" {
-        return Err(Error::at(place, "is not a glTF file: it does not begin with its JSON").cure("export it again"));
+        return Err(wrong("is not a glTF file: it does not begin with its JSON"));
     }
     let after = 20 + json.len();
     if after >= whole {
         return Ok((json, None));
     }
-    let (kind, binary) = chunk(after).ok_or_else(short)?;
+    let (kind, binary) = chunk(after, "1")?;
     Ok((json, (kind == b"BIN\0").then_some(binary)))
 }
 
@@ -224,16 +238,27 @@ fn explain(place: &str, error: &serde_json::Error) -> Error {
     Error::at(place, format!("is not a glTF file: line {line}, column {column}: {what}")).cure("export it again")
 }
 
-/// The bytes of a `data:` address.
-pub(super) fn data(uri: &str, place: &str, budget: &Budget) -> Result<(Vec<u8>, Share)> {
-    let broken = || Error::at(place, "has a part that is not in base64").cure("export it again as .glb");
-    let (head, text) = uri.split_once(',').ok_or_else(broken)?;
-    if !head.ends_with(";base64") {
-        return Err(broken());
-    }
+/// The bytes of the `data:` address of a part that is called so, as `buffer 0`.
+pub(super) fn data(uri: &str, part: &str, place: &str, budget: &Budget) -> Result<(Vec<u8>, Share)> {
+    let broken = |why: &str| Error::at(place, format!("its {part} {why}")).cure("export it again as .glb");
+    let text = uri.split_once(',').filter(|(head, _)| head.ends_with(";base64")).map(|(_, text)| text);
+    let text = text.ok_or_else(|| broken("is in the file, but not in base64"))?;
     let share = budget.take(base64::decoded_len_estimate(text.len()) as u64, place)?;
-    let bytes = BASE64.decode(text).map_err(|_| broken())?;
+    let bytes = BASE64.decode(text).map_err(|error| broken(&format!("is broken base64: {}", told(&error, text))))?;
     Ok((bytes, share))
+}
+
+/// Where base64 is broken, in words.
+fn told(error: &DecodeError, text: &str) -> String {
+    match *error {
+        DecodeError::InvalidByte(at, _) | DecodeError::InvalidLastSymbol(at, _) => {
+            let sign = text.get(at..).and_then(|rest| rest.chars().next()).unwrap_or_default();
+            format!("{sign:?} at character {at} of {}", text.len())
+        }
+        DecodeError::InvalidLength(_) | DecodeError::InvalidPadding => {
+            format!("its {} end within a byte", counted(text.len(), "character"))
+        }
+    }
 }
 
 /// A path whose `%20` and the like are undone; `None` if that is no text.

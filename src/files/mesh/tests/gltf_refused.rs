@@ -46,6 +46,13 @@ fn what_is_wrong_with_nodes_is_told_by_its_number() {
             json!([1e308, 0, 0, 0, 0, 1e308, 0, 0, 0, 0, 1, 0, 1e308, 0, 0, 1]),
             format!("accessor 0: its node moves it out of all bounds {AGAIN}"),
         ),
+        (
+            "/nodes/0/matrix",
+            json!([1, 0, 0, 0.5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]),
+            "node 0: the last row of its matrix is [0.5, 0, 0, 1], and is to be [0, 0, 0, 1] \
+             (write translation, rotation and scale in its place, or export it again)"
+                .to_owned(),
+        ),
     ]);
 }
 
@@ -101,6 +108,7 @@ fn what_is_wrong_with_accessors_is_told_by_its_number() {
 
 #[test]
 fn what_is_wrong_with_buffers_is_told_by_its_number() {
+    const AS_GLB: &str = "(export it again as .glb)";
     const OUTSIDE: &str =
         "not in the model's folder (give --allow-outside, or copy the file beside the model and mend its uri)";
     are_refused(&[
@@ -111,12 +119,22 @@ fn what_is_wrong_with_buffers_is_told_by_its_number() {
         ),
         ("/bufferViews/3/byteOffset", json!(u64::MAX), format!("buffer view 3 reaches beyond its buffer {AGAIN}")),
         ("/bufferViews/3/buffer", json!(1), format!("there is no buffer 1: there is 1 {AGAIN}")),
-        ("/buffers/0/byteLength", json!(200), "is cut short (copy it again from where it came)".to_owned()),
-        ("/buffers/0/uri", json!("data:,a"), "has a part that is not in base64 (export it again as .glb)".to_owned()),
+        (
+            "/buffers/0/byteLength",
+            json!(200),
+            "its buffer 0 has 134 bytes, and is to have 200 (copy it again from where it came, or export it again)"
+                .to_owned(),
+        ),
+        ("/buffers/0/uri", json!("data:,a"), format!("its buffer 0 is in the file, but not in base64 {AS_GLB}")),
         (
             "/buffers/0/uri",
-            json!("data:a/b;base64,=?"),
-            "has a part that is not in base64 (export it again as .glb)".to_owned(),
+            json!("data:a/b;base64,AA?A"),
+            format!("its buffer 0 is broken base64: '?' at character 2 of 4 {AS_GLB}"),
+        ),
+        (
+            "/buffers/0/uri",
+            json!("data:a/b;base64,AAAAA"),
+            format!("its buffer 0 is broken base64: its 5 characters end within a byte {AS_GLB}"),
         ),
         (
             "/buffers/0/uri",
@@ -175,8 +193,16 @@ fn a_file_that_is_cut_short_says_so() {
     let whole = glb(&json, &binary);
     for length in 4..whole.len() {
         let error = read("a.glb", &whole[..length]).unwrap_err();
-        assert_eq!(error, "a.glb: is cut short (copy it again from where it came)", "{length}");
+        let all = whole.len();
+        let sizes = if length < 12 { String::new() } else { format!(": it has {length} bytes, and is to have {all}") };
+        assert_eq!(error, format!("a.glb: is cut short{sizes} (copy it again from where it came)"));
     }
+    let error = read("a.glb", &[&whole[..], &[0; 3]].concat()).unwrap_err();
+    let (found, told) = (whole.len() + 3, whole.len());
+    assert_eq!(error, format!("a.glb: has {found} bytes, and says that it has {told} {AGAIN}"));
+    let mut longer = whole.clone();
+    longer[13] = 0x7f;
+    assert!(read("a.glb", &longer).unwrap_err().contains("its chunk 0 reaches beyond its end"));
     let text = json.to_string();
     for length in 1..text.len() {
         let error = read("a.gltf", &text.as_bytes()[..length]).unwrap_err();
