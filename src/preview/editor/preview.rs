@@ -95,14 +95,14 @@ impl Preview {
     }
 
     /// Asks the windows for what they have not told yet; [`Event::Answered`] comes when they have, or after a while.
-    ///
-    /// # Errors
-    /// There can be no thread that waits for them.
-    pub fn ask(&mut self) -> Result<()> {
+    pub fn ask(&mut self) {
         self.asked += 1;
         let (shared, nth) = (self.shared.clone(), self.asked);
         self.say(FromEditor::Ask(nth));
-        thread("link answers", move || shared.answers(nth, ANSWER))
+        // Without a thread nobody waits.
+        if thread("link answers", move || shared.answers(nth, ANSWER)).is_err() {
+            self.shared.answers(nth, Duration::ZERO);
+        }
     }
 
     /// The animation has run on to `time` (scene time, in seconds) by itself, as it does in the windows: those that join

@@ -73,22 +73,20 @@ impl Editor {
             },
             Effect::Cancel => self.job.iter().for_each(Job::cancel),
             Effect::EditImage(path) => self.edit_image(&path),
-            Effect::View(None) => {
-                // If there is no window, say why each time it is asked for.
-                self.window_told.clear();
-                self.preview.open_window();
-            }
+            Effect::View(None) => self.open_window(),
             Effect::View(Some(command)) => self.preview.view(&command),
             Effect::Look(camera) => self.preview.look(camera.map(|camera| *camera)),
-            Effect::Ask => {
-                if let Err(error) = self.preview.ask() {
-                    self.state.complain(error.to_string());
-                }
-            }
+            Effect::Ask => self.preview.ask(),
             Effect::Redraw => self.screen.iter_mut().for_each(|screen| drop(terminal::forget(screen))),
             Effect::Suspend => self.suspend(),
             Effect::Quit => self.leaving = true,
         }
+    }
+
+    /// Opens the window. If there is none, it says why each time that it is asked for.
+    fn open_window(&mut self) {
+        self.window_told.clear();
+        self.preview.open_window();
     }
 
     /// Completes the path of the command `name`, from the folder `beside`.
