@@ -16,7 +16,7 @@ use crate::layers::parts::materials::Materials;
 use crate::layers::shapes::node::{Node, bezier};
 
 /// A field that is defined everywhere, in pixels.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Dense {
     /// J(q) = T(q) - q.
     Transform(Affine),

@@ -7,7 +7,9 @@ use std::sync::Arc;
 use kurbo::{Point, Rect, Vec2};
 use rayon::prelude::*;
 
+use super::anchor::Anchor;
 use super::anchors::{Dense, anchors, dense};
+use super::changed::Changed;
 use super::fold::Fold;
 use super::inside::{pixel_box, spans};
 use super::interpolation::Cell;
@@ -102,20 +104,24 @@ impl Made {
     /// # Errors
     /// If it needs too much memory or is cancelled; the problem's path is relative to the zone.
     pub fn new(inputs: &Inputs, before: Option<&Made>, materials: &Materials) -> Result<Option<Self>, Problem> {
-        match before.filter(|before| before.inputs.moves == inputs.moves) {
-            Some(Made { field, shares: [share, _], .. }) => {
-                let Field { x0, y0, inside, jumps, folds: _ } = &**field;
-                materials.made(inside.cells().len() as u64);
-                let moved =
-                    Moved { corner: [*x0, *y0], inside: inside.clone(), jumps: jumps.clone(), share: share.clone() };
-                moved.fold(inputs, inputs.folding().as_ref(), materials).map(Some)
-            }
-            None => {
-                let (width, height) = inputs.moves.size;
-                Prepared::new(inputs, materials)?.field((0..width, 0..height), materials)
-            }
+        if let Some(before) = before.filter(|before| before.inputs.moves == inputs.moves) {
+            let Made { field, shares: [share, _], .. } = before;
+            materials.made(field.inside.cells().len() as u64);
+            let (inside, jumps, share) = (field.inside.clone(), field.jumps.clone(), share.clone());
+            let moved = Moved { corner: [field.x0, field.y0], inside, jumps, share };
+            return moved.fold(inputs, inputs.folding().as_ref(), materials).map(Some);
         }
+        let prepared = Prepared::new(inputs, materials)?;
+        let changed = before.and_then(|before| prepared.changed(before, materials));
+        let (width, height) = inputs.moves.size;
+        prepared.part((0..width, 0..height), changed, materials)
     }
+}
+
+fn paths<'a>(corner: [usize; 2], inside: &'a Grid<bool>, jumps: &'a Grid<[f32; 2]>) -> Paths<'a> {
+    let size = [inside.width(), inside.height()];
+    let area = Area { from: corner.map(|k| k as u32), to: [0, 1].map(|k| (corner[k] + size[k]) as u32) };
+    Paths { area, inside: inside.cells(), jumps: jumps.cells() }
 }
 
 /// A field without thresholds.
@@ -130,9 +136,7 @@ impl Moved {
     /// Adds where paths meet the fold regions.
     fn fold(self, inputs: &Inputs, folding: Option<&Folding>, materials: &Materials) -> Result<Made, Problem> {
         let Moved { corner, inside, jumps, share } = self;
-        let size = [inside.width(), inside.height()];
-        let area = Area { from: corner.map(|k| k as u32), to: [0, 1].map(|k| (corner[k] + size[k]) as u32) };
-        let paths = Paths { area, inside: inside.cells(), jumps: jumps.cells() };
+        let paths = paths(corner, &inside, &jumps);
         let folds = folding.map(|folding| folding.folds(&paths, &|| materials.stopped()).ok_or_else(stopped));
         let folds = folds.transpose()?;
         let of_folds = take(materials, folds.as_ref().map_or(0, Folds::bytes))?;
@@ -151,6 +155,7 @@ pub fn pixels(zone: &Zone, (width, height): (usize, usize)) -> u64 {
 pub struct Prepared {
     inputs: Inputs,
     outline: Polygon,
+    anchors: Vec<Anchor>,
     interpolator: Interpolator,
     dense: Vec<Dense>,
     folding: Option<Folding>,
@@ -180,6 +185,7 @@ impl Prepared {
         Ok(Prepared {
             outline: outline.polygon(),
             interpolator: Interpolator::new(interpolation, &anchors, size, *place, materials)?,
+            anchors,
             dense: dense(motion, materials),
             folding: inputs.folding(),
             inputs: inputs.clone(),
@@ -196,7 +202,7 @@ impl Prepared {
             return Pixel::default();
         }
         let mut jump = [0.0; 2];
-        for cell in &self.interpolator.cells(&area, &|| false).unwrap_or_default() {
+        for cell in &self.interpolator.cells(&area, &|_| true, &|| false).unwrap_or_default() {
             self.interpolator.fill(cell, &area, &|_| true, &mut |mut stretch| {
                 self.move_densely(&mut stretch, &inside);
                 jump = [stretch.x[0] as f32, stretch.y[0] as f32];
@@ -236,36 +242,67 @@ impl Prepared {
 }
 
 impl Prepared {
+    /// Where jump vectors may differ from those of a field that was made before; `None` if anywhere.
+    fn changed<'a>(&self, before: &'a Made, materials: &Materials) -> Option<Changed<'a>> {
+        // Outline and motion are looked at below.
+        let (Moves { outline, motion, .. }, then) = (&self.inputs.moves, &before.inputs.moves);
+        let alike = Moves { outline: outline.clone(), motion: motion.clone(), ..then.clone() } == self.inputs.moves;
+        let is_feathered_alike = then.feather <= 0.0 || then.outline == *outline;
+        if !(alike && is_feathered_alike && dense(&then.motion, materials) == self.dense) {
+            return None;
+        }
+        let anchors = then.interpolation.changed(&anchors(&then.motion, &then.outline), &self.anchors)?;
+        let Field { x0, y0, inside, jumps, .. } = &*before.field;
+        Some(Changed::new(paths([*x0, *y0], inside, jumps), anchors))
+    }
+
     /// The field in these columns and rows of the picture only; `None` and errors as for [`Made::new`].
     pub fn field(&self, part: (Range<usize>, Range<usize>), materials: &Materials) -> Result<Option<Made>, Problem> {
+        self.part(part, None, materials)
+    }
+
+    fn part(
+        &self,
+        part: (Range<usize>, Range<usize>),
+        mut changed: Option<Changed>,
+        materials: &Materials,
+    ) -> Result<Option<Made>, Problem> {
         let Some((x0, y0, width, height)) = pixel_box(self.outline.bounds(), part) else { return Ok(None) };
         let from = [x0 as u32, y0 as u32];
         let area = Area { from, to: [from[0] + width as u32, from[1] + height as u32] };
         let count = width * height;
         let share = take(materials, (count * (size_of::<[f32; 2]>() + size_of::<bool>())) as u64)?;
-        let cells = self.interpolator.cells(&area, &|| materials.stopped()).ok_or_else(stopped)?;
+        let mut inside = vec![false; count];
+        spans(&self.outline, &area, self.inputs.moves.place, &mut inside);
+        let taken_over = changed.as_mut().map(|changed| changed.take_over(&area, &inside));
+        let mut jumps = taken_over.unwrap_or_else(|| vec![[0.0; 2]; count]);
+        let changed = changed.as_ref();
+        let touched = |part: &Area| changed.is_none_or(|changed| changed.touches(part));
+        let cells = self.interpolator.cells(&area, &touched, &|| materials.stopped()).ok_or_else(stopped)?;
         let _of_cells = take(materials, cells.iter().map(Cell::bytes).sum())?;
-        let (mut inside, mut jumps) = (vec![false; count], vec![[0.0; 2]; count]);
-        let bands = bands(&cells, &area, (&mut inside, &mut jumps));
-        bands.into_par_iter().map(|band| self.make(band, materials)).collect::<Option<()>>().ok_or_else(stopped)?;
+        materials.made(count as u64 - cells.iter().map(|cell| pixels_of(cell, &area)).sum::<u64>());
+        let bands = bands(&cells, &area, &inside, &mut jumps);
+        let make = |band| self.make(band, changed, materials);
+        bands.into_par_iter().map(make).collect::<Option<()>>().ok_or_else(stopped)?;
         let inside = Arc::new(Grid::from_cells(width, height, inside));
         let jumps = Arc::new(Grid::from_cells(width, height, jumps));
         let moved = Moved { corner: [x0, y0], inside, jumps, share: Arc::new(share) };
         moved.fold(&self.inputs, self.folding.as_ref(), materials).map(Some)
     }
 
-    /// Makes a band; `None` if stopped.
-    fn make(&self, band: Band, materials: &Materials) -> Option<()> {
+    /// Makes what has changed of a band, or all of it; `None` if stopped.
+    fn make(&self, band: Band, changed: Option<&Changed>, materials: &Materials) -> Option<()> {
         let Band { area, cells, inside, jumps } = band;
-        spans(&self.outline, &area, self.inputs.moves.place, inside);
-        // Now in order: cells are far from each other in memory that was never used.
-        jumps.fill([0.0; 2]);
-        let inside = &*inside;
+        if changed.is_none() {
+            // Now in order: cells are far from each other in memory that was never used.
+            jumps.fill([0.0; 2]);
+        }
         let width = (area.to[0] - area.from[0]) as usize;
         let at = |[x, y]: [u32; 2]| (y - area.from[1]) as usize * width + (x - area.from[0]) as usize;
         let wanted = |part: &Area| {
             let columns = (part.to[0] - part.from[0]) as usize;
-            (part.from[1]..part.to[1]).any(|y| inside[at([part.from[0], y])..][..columns].contains(&true))
+            let any = |y: u32| inside[at([part.from[0], y])..][..columns].contains(&true);
+            changed.is_none_or(|changed| changed.touches(part)) && (part.from[1]..part.to[1]).any(any)
         };
         for cell in cells {
             if materials.stopped() {
@@ -281,10 +318,15 @@ impl Prepared {
                     || narrow(&stretch, inside, jumps),
                 );
             });
-            materials.made(cell.area().and(&area).map_or(0, |part| part.count()));
+            materials.made(pixels_of(cell, &area));
         }
         Some(())
     }
+}
+
+/// How many pixels of `area` are in a cell.
+fn pixels_of(cell: &Cell, area: &Area) -> u64 {
+    cell.area().and(area).map_or(0, |part| part.count())
 }
 
 fn stopped() -> Problem {
@@ -310,24 +352,21 @@ fn narrow(stretch: &Stretch, inside: &[bool], jumps: &mut [[f32; 2]]) {
 struct Band<'a> {
     area: Area,
     cells: &'a [Cell],
-    inside: &'a mut [bool],
+    inside: &'a [bool],
     jumps: &'a mut [[f32; 2]],
 }
 
-/// Membership and jump vectors, row by row.
-type Rows<'a> = (&'a mut [bool], &'a mut [[f32; 2]]);
-
-/// The bands of a field: of each row of cells one.
-fn bands<'a>(cells: &'a [Cell], area: &Area, mut rows: Rows<'a>) -> Vec<Band<'a>> {
-    let mut bands = Vec::new();
+/// The bands of a field, without rows that are in no cell: of each row of cells one.
+fn bands<'a>(cells: &'a [Cell], area: &Area, mut inside: &'a [bool], mut jumps: &'a mut [[f32; 2]]) -> Vec<Band<'a>> {
+    let (mut bands, mut y, width) = (Vec::new(), area.from[1], (area.to[0] - area.from[0]) as usize);
     for cells in cells.chunk_by(|a, b| a.area().from[1] == b.area().from[1]) {
-        let from = [area.from[0], cells[0].area().from[1].max(area.from[1])];
-        let area = Area { from, to: [area.to[0], cells[0].area().to[1].min(area.to[1])] };
-        let count = area.count() as usize;
-        let (inside, jumps) = rows;
-        let (inside, jumps) = (inside.split_at_mut(count), jumps.split_at_mut(count));
-        bands.push(Band { area, cells, inside: inside.0, jumps: jumps.0 });
-        rows = (inside.1, jumps.1);
+        let rows = cells[0].area();
+        let from = [area.from[0], rows.from[1].max(area.from[1])];
+        let band = Area { from, to: [area.to[0], rows.to[1].min(area.to[1])] };
+        let (skipped, count) = ((from[1] - y) as usize * width, band.count() as usize);
+        let (own, rest) = std::mem::take(&mut jumps)[skipped..].split_at_mut(count);
+        bands.push(Band { area: band, cells, inside: &inside[skipped..][..count], jumps: own });
+        (inside, jumps, y) = (&inside[skipped + count..], rest, band.to[1]);
     }
     bands
 }

@@ -7,6 +7,7 @@ pub mod anchors;
 pub mod atlas;
 pub mod breaks;
 pub mod bundle;
+pub mod changed;
 pub mod check;
 pub mod clock;
 pub mod counts;

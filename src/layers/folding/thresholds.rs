@@ -159,7 +159,8 @@ impl Folding {
 }
 
 impl Paths<'_> {
-    fn index(&self, [x, y]: [u32; 2]) -> usize {
+    /// Where the numbers of a pixel are.
+    pub fn index(&self, [x, y]: [u32; 2]) -> usize {
         let Area { from, to } = self.area;
         (y - from[1]) as usize * (to[0] - from[0]) as usize + (x - from[0]) as usize
     }

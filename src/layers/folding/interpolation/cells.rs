@@ -10,13 +10,13 @@ use rayon::prelude::*;
 use super::area::{Area, Stretch};
 use super::chebyshev::{Chebyshev, NODES, Nodes, Shares, along, row_of};
 use super::kernel::{Apart, Fate, Kernel, Pair, Source};
-use super::method::{AT_ANCHOR_PX, Cell, Method};
+use super::method::{AT_ANCHOR_PX, Cell, Method, Wanted};
 use crate::base::simd::vectorised;
 
 /// Pixels along a side of the cells whose pixels are evaluated at once: the larger, and the smaller where many anchors
 /// are near.
-const LEAF: usize = 32;
-const SMALL_LEAF: usize = LEAF / 2;
+pub const LEAF: u32 = 32;
+const SMALL_LEAF: u32 = LEAF / 2;
 
 /// With more anchors near it than this a cell is split once more.
 const MANY: usize = 10;
@@ -39,8 +39,8 @@ pub struct Cells<K, const C: usize> {
     /// Side of the one cell that contains the picture.
     whole: u32,
     chebyshev: Chebyshev,
-    leaf: Leaf<LEAF>,
-    small_leaf: Leaf<SMALL_LEAF>,
+    leaf: Leaf<{ LEAF as usize }>,
+    small_leaf: Leaf<{ SMALL_LEAF as usize }>,
 }
 
 impl<K: Kernel<C>, const C: usize> Cells<K, C> {
@@ -48,18 +48,18 @@ impl<K: Kernel<C>, const C: usize> Cells<K, C> {
     pub fn new(kernel: K, sources: Vec<Source<C>>, size: [u32; 2], place: [f64; 2]) -> Self {
         let chebyshev = Chebyshev::new();
         let whole = size[0].max(size[1]).max(BASE).next_power_of_two();
-        let leaf = Leaf(place.map(|first| chebyshev.shares_of_pixels(first, LEAF as f64)));
-        let small_leaf = Leaf(place.map(|first| chebyshev.shares_of_pixels(first, SMALL_LEAF as f64)));
+        let leaf = Leaf(place.map(|first| chebyshev.shares_of_pixels(first, f64::from(LEAF))));
+        let small_leaf = Leaf(place.map(|first| chebyshev.shares_of_pixels(first, f64::from(SMALL_LEAF))));
         Cells { kernel, sources, place, whole, chebyshev, leaf, small_leaf }
     }
 
-    /// The quarters of a cell that `area` touches.
-    fn quarters(&self, cell: &Cell, area: &Area) -> impl Iterator<Item = Cell> {
+    /// The quarters of a cell whose part of `area` is `wanted`.
+    fn quarters(&self, cell: &Cell, area: &Area, wanted: &dyn Fn(&Area) -> bool) -> impl Iterator<Item = Cell> {
         let size = cell.size() / 2;
         [[false, false], [true, false], [false, true], [true, true]].into_iter().filter_map(move |quarter| {
             let from = [0, 1].map(|k| cell.area.from[k] + if quarter[k] { size } else { 0 });
             let part = Area { from, to: from.map(|from| from + size) };
-            part.and(area).map(|_| self.quarter(cell, quarter, part))
+            part.and(area).filter(wanted).map(|_| self.quarter(cell, quarter, part))
         })
     }
 
@@ -241,13 +241,13 @@ impl<K: Kernel<C>, const C: usize> Cells<K, C> {
 }
 
 impl<K: Kernel<C>, const C: usize> Method for Cells<K, C> {
-    fn cells(&self, area: &Area, stopped: &(dyn Fn() -> bool + Sync)) -> Option<Vec<Cell>> {
+    fn cells(&self, area: &Area, wanted: Wanted, stopped: &(dyn Fn() -> bool + Sync)) -> Option<Vec<Cell>> {
         let base = (self.whole / BASES).max(BASE);
         let whole = Area { from: [0, 0], to: [self.whole, self.whole] };
         let near = (0..self.sources.len() as u32).collect();
         let mut cells = vec![Cell { area: whole, nodes: vec![[[0.0; NODES]; NODES]; C], near, doubt: 0.0 }];
         while cells.first().is_some_and(|cell| cell.size() > base) {
-            let quarters = |cell: &Cell| (!stopped()).then(|| self.quarters(cell, area).collect::<Vec<_>>());
+            let quarters = |cell: &Cell| (!stopped()).then(|| self.quarters(cell, area, wanted).collect::<Vec<_>>());
             cells = cells.par_iter().map(quarters).collect::<Option<Vec<_>>>()?.concat();
         }
         cells.sort_unstable_by_key(|cell| [cell.area.from[1], cell.area.from[0]]);
@@ -256,10 +256,10 @@ impl<K: Kernel<C>, const C: usize> Method for Cells<K, C> {
 
     fn fill(&self, cell: &Cell, area: &Area, wanted: &dyn Fn(&Area) -> bool, tell: &mut dyn FnMut(Stretch)) {
         let Some(part) = cell.area.and(area).filter(|part| wanted(part)) else { return };
-        match cell.size() as usize {
+        match cell.size() {
             LEAF if cell.near.len() <= MANY => self.tell(cell, &self.leaf, &part, tell),
             SMALL_LEAF => self.tell(cell, &self.small_leaf, &part, tell),
-            _ => self.quarters(cell, area).for_each(|quarter| self.fill(&quarter, area, wanted, tell)),
+            _ => self.quarters(cell, area, wanted).for_each(|quarter| self.fill(&quarter, area, wanted, tell)),
         }
     }
 }

@@ -6,10 +6,13 @@ use super::chebyshev::Nodes;
 /// A pixel closer to an anchor than this, in pixels, takes that anchor's vector.
 pub const AT_ANCHOR_PX: f64 = 1e-6;
 
+/// Whether anything in a part of an area is wanted.
+pub type Wanted<'a> = &'a (dyn Fn(&Area) -> bool + Sync);
+
 /// A method, prepared for the anchors of a zone.
 pub trait Method: Send + Sync {
-    /// The cells that `area` touches, from left to right and down; `None` once `stopped`.
-    fn cells(&self, area: &Area, stopped: &(dyn Fn() -> bool + Sync)) -> Option<Vec<Cell>>;
+    /// The cells that `area` touches, from left to right and down, without those that are not `wanted`; `None` once `stopped`.
+    fn cells(&self, area: &Area, wanted: Wanted, stopped: &(dyn Fn() -> bool + Sync)) -> Option<Vec<Cell>>;
 
     /// Tells the jump vectors of the pixels that are in `area` and in `cell`, which [`Method::cells`] made, without parts
     /// that are not `wanted`.

@@ -4,7 +4,7 @@
 //! A method is a `kernel`: how the weight of an anchor depends on its distance, and what follows from the weighted sums.
 //! [`cells`] makes the sums, for every method in the same way.
 
-use kurbo::{Rect, Vec2};
+use kurbo::{Point, Rect, Vec2};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -18,7 +18,7 @@ use cells::Cells;
 use inverse_distance::{InverseSquare, Modified, Power, Steep};
 use kernel::{Kernel, Source, sources, spread};
 pub use method::Cell;
-use method::Method;
+use method::{Method, Wanted};
 use rigid::Rigid;
 use thin_plate::{NoPlate, Plate};
 
@@ -115,6 +115,22 @@ impl Interpolation {
         }
     }
 
+    /// Where the jump vectors of one list of anchors may differ from those of another: only within a distance, in pixels, of
+    /// some places; `None` if anywhere.
+    pub fn changed(&self, before: &[Anchor], now: &[Anchor]) -> Option<(Vec<Point>, f64)> {
+        let differ = |(a, b): &(&Anchor, &Anchor)| a.at != b.at || a.jump != b.jump;
+        let places: Vec<Point> = before.iter().zip(now).filter(differ).flat_map(|(a, b)| [a.at, b.at]).collect();
+        match *self {
+            _ if before.len() != now.len() => None,
+            _ if places.is_empty() => Some((places, 0.0)),
+            // How far is far enough for sums at nodes depends on the spread.
+            Interpolation::ModifiedShepard { radius } | Interpolation::ModifiedShepardRandom { radius, .. } => {
+                (spread_of(before) == spread_of(now)).then_some((places, radius))
+            }
+            Interpolation::Shepard { .. } | Interpolation::ThinPlate { .. } | Interpolation::Rigid {} => None,
+        }
+    }
+
     /// Bytes of memory that preparing `count` anchors takes, besides the anchors.
     pub fn bytes(&self, count: u64) -> u64 {
         match self {
@@ -143,7 +159,7 @@ impl Interpolator {
         let bytes = interpolation.bytes(anchors.len() as u64);
         let _share = materials.budget.try_take(bytes).map_err(|short| short.problem("/interpolation"))?;
         let over = Over { anchors, size, place: [place.x, place.y] };
-        let spread = spread(anchors.iter().map(|anchor| [anchor.jump.x, anchor.jump.y]));
+        let spread = spread_of(anchors);
         Ok(Interpolator(match *interpolation {
             Interpolation::Shepard { power } => over.shepard(power, spread),
             Interpolation::ModifiedShepard { radius } => over.means(Modified::<false>::new(radius, 0.0, 0, spread)),
@@ -167,9 +183,10 @@ impl Interpolator {
         }))
     }
 
-    /// The cells that `area` touches, from left to right and down; `None` once `stopped`.
-    pub fn cells(&self, area: &Area, stopped: &(dyn Fn() -> bool + Sync)) -> Option<Vec<Cell>> {
-        self.0.cells(area, stopped)
+    /// The cells that `area` touches, from left to right and down, without those that are not `wanted`; `None` once
+    /// `stopped`.
+    pub fn cells(&self, area: &Area, wanted: Wanted, stopped: &(dyn Fn() -> bool + Sync)) -> Option<Vec<Cell>> {
+        self.0.cells(area, wanted, stopped)
     }
 
     /// Tells the jump vectors of the pixels that are in `area` and in `cell`, one of [`Interpolator::cells`], a stretch at
@@ -177,6 +194,10 @@ impl Interpolator {
     pub fn fill(&self, cell: &Cell, area: &Area, wanted: &dyn Fn(&Area) -> bool, tell: &mut dyn FnMut(Stretch)) {
         self.0.fill(cell, area, wanted, tell);
     }
+}
+
+fn spread_of(anchors: &[Anchor]) -> f64 {
+    spread(anchors.iter().map(|anchor| [anchor.jump.x, anchor.jump.y]))
 }
 
 /// Anchors over a picture.

@@ -34,7 +34,7 @@ fn interpolator(json: &str, anchors: &[Anchor], size: [u32; 2], place: Vec2) -> 
 fn jumps(interpolator: &Interpolator, area: Area) -> Vec<Vec2> {
     let width = (area.to[0] - area.from[0]) as usize;
     let mut found = vec![Vec2::new(f64::NAN, f64::NAN); area.count() as usize];
-    for cell in interpolator.cells(&area, &|| false).unwrap() {
+    for cell in interpolator.cells(&area, &|_| true, &|| false).unwrap() {
         interpolator.fill(&cell, &area, &|_| true, &mut |Stretch { pixel: [x, y], x: xs, y: ys }| {
             let first = (y - area.from[1]) as usize * width + (x - area.from[0]) as usize;
             let told = found[first..].iter_mut().zip(xs.iter().zip(ys.iter()));
