@@ -303,13 +303,13 @@ fn a_clip_is_read_frame_by_frame() {
     assert_eq!(problem.path, "/zones/0/sampler/clip");
 }
 
-/// A layer of one zone with 20 anchors, feathered if asked, some of which stands in place of `with`.
+/// A layer of one zone of 20 anchors and one that can be edited, as can a corner, the region and what more there is.
 fn edited(method: &str, [anchor, corner, region, more]: [&str; 4]) -> PictureLayer {
     let point =
-        |k: usize| format!(r#"{{"tool":"point","at":[{},{}],"jump":[{},9]}}"#, k * 37 % 150, k * 23 % 90, k % 5);
+        |k: usize| format!(r#"{{"tool":"point","at":[{},{}],"jump":[{},9]}}"#, k * 37 % 100, k * 23 % 70, k % 5);
     let points: Vec<String> = (0..20).map(point).collect();
     layer(&format!(
-        r#"{{"name":"z","interpolation":{method},"outline":{{"kind":"polygon","points":[[4,3],{corner},[140,88],[9,90]]}},
+        r#"{{"name":"z","interpolation":{method},"outline":{{"kind":"polygon","points":[[4,3],{corner},[98,66],[9,69]]}},
             "motion":[{},{anchor}],"fold":{{"rule":"cover","regions":[{region}]}}{more}}}"#,
         points.join(",")
     ))
@@ -318,36 +318,43 @@ fn edited(method: &str, [anchor, corner, region, more]: [&str; 4]) -> PictureLay
 #[test]
 fn an_edit_leads_to_the_field_of_a_whole_synthesis() {
     let mut materials = materials();
-    materials.pictures.insert("ramp".into(), Arc::new(Picture::filled(150, 100, [0.5; 4])));
+    materials.pictures.insert("ramp".into(), Arc::new(Picture::filled(100, 70, [0.5; 4])));
     let making = Making::plain(Wrap::Once, &materials);
-    let anchor = r#"{"tool":"point","at":[40,30],"jump":[1,2]}"#;
+    let anchor = |x: usize, y: usize| format!(r#"{{"tool":"point","at":[{x},{y}],"jump":[1,2]}}"#);
+    let (own, corner) = (anchor(40, 30), "[80,20]");
     let region = r#"{"kind":"rectangle","x":60,"y":30,"width":20,"height":30}"#;
-    let begin = [anchor, "[120,20]", region, ""];
     let edits = [
-        [r#"{"tool":"point","at":[41,30],"jump":[1,2]}"#, "[120,20]", region, ""],
-        [r#"{"tool":"point","at":[110,70],"jump":[3,4]}"#, "[120,20]", region, ""],
-        [r#"{"tool":"point","at":[40,30],"jump":[1,40]}"#, "[120,20]", region, ""],
-        [r#"{"tool":"still-border","spacing":30}"#, "[120,20]", region, ""],
-        [anchor, "[149,0]", region, ""],
-        [anchor, "[90,40]", region, ""],
-        [anchor, "[120,20]", r#"{"kind":"ellipse","center":[70,50],"radii":[9,20]}"#, ""],
-        [anchor, "[120,20]", region, r#","feather":7"#],
-        [anchor, "[120,20]", region, r#","position":{"function":"sine","cycles":1,"amplitude":1.3}"#],
-        [r#"{"tool":"rotate","center":[50,50],"degrees":5}"#, "[120,20]", region, ""],
+        [r#"{"tool":"point","at":[40,30],"jump":[1,4000]}"#, corner, region, ""],
+        [r#"{"tool":"still-border","spacing":30}"#, corner, region, ""],
+        [r#"{"tool":"rotate","center":[50,50],"degrees":5}"#, corner, region, ""],
+        [&own, "[99,0]", region, ""],
+        [&own, "[60,40]", region, ""],
+        [&own, corner, r#"{"kind":"ellipse","center":[50,50],"radii":[9,20]}"#, ""],
+        [&own, corner, region, r#","feather":7"#],
+        [&own, corner, region, r#","position":{"function":"sine","cycles":1,"amplitude":1.3}"#],
     ];
-    for method in [
-        r#"{"method":"shepard"}"#,
-        r#"{"method":"modified-shepard","radius":31}"#,
-        r#"{"method":"modified-shepard-random","radius":22,"ring":9}"#,
+    let moved: Vec<String> = (0..11).map(|k| anchor(k * 31 % 100, k * 47 % 70)).collect();
+    let moves = moved.iter().map(|moved| [moved, corner, region, ""]);
+    let [near, random] = [
+        r#"{"method":"modified-shepard","radius":45}"#,
+        r#"{"method":"modified-shepard-random","radius":14,"ring":6}"#,
+    ];
+    let far = r#"{"method":"shepard"}"#;
+    for (method, edits) in [
+        (far, &edits[..]),
+        (near, &edits),
+        (near, &moves.clone().collect::<Vec<_>>()),
+        (random, &moves.collect::<Vec<_>>()),
     ] {
         let make = |what: [&str; 4], before: Option<&synth::Synth>| {
-            synth::synth(&edited(method, what), &making, before).unwrap()
+            synth::synth(&edited(method, what), &making, before).unwrap().zones[0].clone()
         };
-        let before = make(begin, None);
+        let begin = [&own, corner, region, ""];
+        let before = synth::synth(&edited(method, begin), &making, None).unwrap();
         for edit in edits {
-            let [after, whole] = [Some(&before), None].map(|before| make(edit, before));
-            assert!(after.zones[0].field == whole.zones[0].field, "{method}, {edit:?}");
-            let same = Arc::ptr_eq(&after.zones[0].field.jumps, &before.zones[0].field.jumps);
+            let [after, whole] = [Some(&before), None].map(|before| make(*edit, before).field);
+            assert!(after == whole, "{method}, {edit:?}");
+            let same = Arc::ptr_eq(&after.jumps, &before.zones[0].field.jumps);
             assert_eq!(same, edit[..2] == begin[..2] && !edit[3].contains("feather"), "{method}, {edit:?}");
         }
     }
