@@ -71,6 +71,7 @@ const OWN: &[KeyRow] = &[
     row(WINDOW, "0", "own-view-off", "The scene's camera again"),
     row(WINDOW, "D", "next-pass", "The next pass that the scene has, from depth on; the frame at the end"),
     row(WINDOW, "Backspace", "previous-pass", "The pass before"),
+    row(WINDOW, "Tab", "next-sight", "Painting on a mesh: from results to the painting, to select, and round"),
     row(WINDOW, "F11", "view-full-screen", "The whole screen"),
     row(WINDOW, "Enter", "mark-point", "Marks the pointer's place, for the editor"),
     row(WINDOW, "u", "select-point", "Selects what is under the pointer; so does a click"),

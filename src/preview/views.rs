@@ -9,6 +9,7 @@ use super::keys::{KEYS, VIEW};
 use crate::layers::parts::pass::COLOR;
 use crate::render::overlay::overlays;
 use crate::render::shown::Shown;
+use crate::render::sight::Sight;
 
 /// Switches that are on in a new window.
 const ON_AT_FIRST: [&str; 2] = ["view-checkerboard", "view-legends"];
@@ -159,13 +160,14 @@ impl Views {
         let differs = |name: &&str| own.on.contains(name) != other.on.contains(name) && !own.is_over_pass(name);
         let over = |name: &&str| own.is_over_pass(name) && !other.is_over_pass(name);
         let pass = (self.pass != before.pass).then(|| show_pass(self.pass.as_deref()));
-        let Shown { muted, compared } = &self.shown;
+        let Shown { muted, compared, sight } = &self.shown;
         let compared = (*compared != before.shown.compared).then(|| show_compared(compared.as_deref()));
         let muted = (*muted != before.shown.muted).then(|| show_muted(muted));
+        let sight = (*sight != before.shown.sight).then(|| show_sight(sight.as_ref()));
         let switches = rows().filter(differs).map(|name| set(name, own.on.contains(name)));
         // What came before the pass it would hide.
         let over = rows().filter(over).map(|name| set(name, true));
-        switches.chain(pass).chain(over).chain(muted).chain(compared).collect()
+        switches.chain(pass).chain(over).chain(muted).chain(compared).chain(sight).collect()
     }
 
     /// Takes what is in force at the other end; returns the commands that lead there. A window that was zoomed already keeps
@@ -223,6 +225,11 @@ pub fn show_compared(by: Option<&str>) -> String {
     format!("compare {}", by.unwrap_or(NOTHING))
 }
 
+/// The command that shows something in place of what the camera sees; that again for `None`.
+pub fn show_sight(sight: Option<&Sight>) -> String {
+    format!("sight {}", serde_json::json!(sight))
+}
+
 /// Takes a command that changes how a scene is shown; whether it is one.
 pub fn shows_otherwise(shown: &mut Shown, command: &str) -> bool {
     match command.split_once(' ') {
@@ -231,6 +238,7 @@ pub fn shows_otherwise(shown: &mut Shown, command: &str) -> bool {
             shown.compared = (by != NOTHING).then(|| by.to_owned());
             true
         }
+        Some(("sight", sight)) => serde_json::from_str(sight).map(|sight| shown.sight = sight).is_ok(),
         _ => false,
     }
 }
@@ -264,7 +272,8 @@ mod tests {
 
     #[test]
     fn only_what_is_in_force_is_listed() {
-        let table: [(&[&str], &[&str]); 17] = [
+        const PAINTING: &str = r#"sight {"painting":{"layer":0,"picture":2,"share":0.5}}"#;
+        let table: [(&[&str], &[&str]); 19] = [
             (&["view-field", "pass depth", "view-paths"], &["view-field on", "pass depth", "view-paths on"]),
             (&["view-field", "pass depth", "view-field", "pass color"], &["view-field on"]),
             (&["pass depth", "view-grid", "pass normal:face"], &["view-grid on", "pass normal:face"]),
@@ -273,6 +282,8 @@ mod tests {
             (&["mute [\"/layers/0\"]", "mute []"], &[]),
             (&["compare anchor", "compare style", "pass depth"], &["pass depth", "compare style"]),
             (&["compare anchor", "compare none"], &[]),
+            (&[PAINTING, "sight {}", "view-grid"], &["view-grid on", PAINTING]),
+            (&[PAINTING, "sight null"], &[]),
             (&["view-field", "view-grid", "view-field"], &["view-grid on"]),
             (&["view-field on", "view-field on"], &["view-field on"]),
             (&["view-checkerboard", "view-legends off", "view-legends"], &["view-checkerboard off"]),

@@ -28,6 +28,7 @@ pub mod reduce;
 pub mod samples;
 pub mod seams;
 pub mod shown;
+pub mod sight;
 pub mod stage;
 #[cfg(test)]
 mod tests;

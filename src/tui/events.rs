@@ -80,7 +80,7 @@ pub struct Synthesis {
 
 /// A change of the document, as it is sent to windows.
 #[derive(Clone, Debug)]
-pub struct Change {
+pub struct Published {
     /// The document after it.
     pub document: Document,
     /// Its revision.
@@ -93,7 +93,7 @@ pub struct Change {
 #[derive(Clone, Debug)]
 pub enum Effect {
     /// The document has changed: show it everywhere.
-    Publish(Box<Change>),
+    Publish(Box<Published>),
     /// The time or the selection has changed.
     Show,
     /// The time has passed, or a window has changed it: windows need no message for that.
@@ -131,6 +131,8 @@ pub enum Effect {
     Mute,
     /// What is compared has changed.
     Compare,
+    /// What is seen in place of what the camera sees has changed.
+    Sight,
     /// Send a table through a program of the person's.
     Pipe(String, String),
     /// Look for the files that a path could become.

@@ -16,7 +16,7 @@ mod tutor;
 
 pub use commands::manual::manual;
 pub use commands::own_keys::read as keymap;
-pub use events::Change;
+pub use events::Published;
 pub use keys::Keymap;
 pub use outside::offscreen::Offscreen;
 pub use outside::options::Options;

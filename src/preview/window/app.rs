@@ -20,7 +20,7 @@ use super::state::State;
 use super::text::Letters;
 use super::worker::{Event, Ready, Sending};
 use crate::base::error::{Error, Result};
-use crate::preview::Transport as Leading;
+use crate::preview::Transport;
 use crate::preview::wire::message::{Gesture, ToEditor};
 
 /// The window and all that it shows.
@@ -158,7 +158,7 @@ impl App {
     pub(super) fn lead(&self) {
         let State { transport, timeline, .. } = &self.state;
         let time = transport.scene_time(timeline) * timeline.duration;
-        self.reply(Gesture::Transport(Leading { playing: transport.playing, time, speed: transport.speed }));
+        self.reply(Gesture::Transport(Transport { playing: transport.playing, time, speed: transport.speed }));
     }
 
     pub(super) fn reply(&self, reply: impl Into<ToEditor>) {

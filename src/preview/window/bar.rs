@@ -175,7 +175,7 @@ fn said(state: &State) -> (String, Color) {
         (None, Some(explained)) => (explained, TEXT),
         (None, None) => {
             let followed = words.progress.as_deref().or(words.notice.as_deref());
-            let parts = [state.left_out.as_deref(), state.selected.as_deref(), followed];
+            let parts = [state.otherwise.as_deref(), state.selected.as_deref(), followed];
             (parts.into_iter().flatten().collect::<Vec<_>>().join("   "), DIM)
         }
     }
@@ -306,7 +306,7 @@ mod tests {
         let mut state = State { selected: Some("face/eye".into()), ..state() };
         state.words.notice = Some("joined".into());
         assert_eq!(said(&state), ("face/eye   joined".into(), DIM));
-        state.left_out = Some("without 2 muted".into());
+        state.otherwise = Some("without 2 muted".into());
         assert_eq!(said(&state).0, "without 2 muted   face/eye   joined");
         state.passes = vec!["shade"];
         state.run("next-pass");

@@ -47,7 +47,7 @@ impl App {
         match command {
             "mark-point" => self.tell(command, self.state.marked),
             "select-point" => self.tell(command, self.state.pointed()),
-            TRY_NOW => self.reply(Gesture::Command(command.to_owned())),
+            TRY_NOW | "next-sight" => self.reply(Gesture::Command(command.to_owned())),
             "next-pass" | "previous-pass" => self.reply(Gesture::Command(views::show_pass(self.state.pass.as_deref()))),
             switch => views::setting(switch, &self.state.switches).into_iter().for_each(|setting| {
                 self.reply(Gesture::Command(setting));

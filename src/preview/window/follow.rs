@@ -13,7 +13,7 @@ use super::words::Words;
 use super::worker::{Ready, Sending, Sent};
 use crate::base::error::Result;
 use crate::base::problem::Problem;
-use crate::preview::Transport as Leading;
+use crate::preview::Transport;
 use crate::preview::follow::Update;
 use crate::preview::wire::message::{FromEditor, ToEditor};
 use crate::render::passes;
@@ -87,7 +87,11 @@ impl App {
         self.grows_to = self.shown.is_none().then(|| self.first_size(event_loop));
         self.shown = Some(show);
         self.state.words.reduced = reduced;
-        self.state.left_out = ready.left_out;
+        self.state.otherwise = ready.otherwise;
+        // One looks round the cameras from elsewhere than at the result.
+        if std::mem::replace(&mut self.state.selects, ready.selects) != ready.selects {
+            self.state.look_from(None);
+        }
         self.state.words.follow_scene(ready.problems);
         self.marks.revision += 1;
         self.owed = Some(ToEditor::Ack { revision: ready.revision, synth_ms: ready.synth_ms });
@@ -155,7 +159,7 @@ impl App {
 
     /// Plays or pauses as the editor does. A window in which the time is dragged leads, and two running clocks that nearly
     /// agree are left alone.
-    fn join_in(&mut self, Leading { playing, time, speed }: Leading) {
+    fn join_in(&mut self, Transport { playing, time, speed }: Transport) {
         let State { transport, timeline, .. } = &mut self.state;
         let t = time / timeline.duration.max(f64::MIN_POSITIVE);
         let apart = (transport.scene_time(timeline) - t).abs();

@@ -21,6 +21,7 @@ pub fn command(key: &Key, held: ModifiersState, again: bool) -> Option<&'static 
         Key::Named(NamedKey::Backspace) => "Backspace",
         Key::Named(NamedKey::F11) => "F11",
         Key::Named(NamedKey::Space) => "Space",
+        Key::Named(NamedKey::Tab) => "Tab",
         Key::Character(text) if text == "=" => "+", // the same key without Shift on many keyboards
         Key::Character(text) => text.as_str(),
         _ => return None,
@@ -47,6 +48,7 @@ mod tests {
             ("Backspace", NamedKey::Backspace),
             ("F11", NamedKey::F11),
             ("Space", NamedKey::Space),
+            ("Tab", NamedKey::Tab),
         ];
         for row in KEYS.iter() {
             let name = named.iter().find(|(written, _)| *written == row.key);

@@ -2,7 +2,7 @@
 
 use super::state::State;
 use crate::base::maths::pow;
-use crate::layers::parts::marks::{View, When};
+use crate::layers::parts::marks::{Overlay, View, When};
 use crate::render::overlay::{self, overlays};
 
 /// An arrow of the vector field stands about every so many logical pixels of the screen, unless keys change it, by so many
@@ -46,7 +46,8 @@ impl State {
 
     /// The overlays that are shown, no denser than stays legible on the screen.
     fn view(&self, wanted: impl Fn(When) -> bool) -> View {
-        let shown = overlays().filter(|overlay| wanted(overlay.when) && self.shows(overlay.name));
+        let is_on = |overlay: &Overlay| self.shows(overlay.name) || self.selects && overlay.selects;
+        let shown = overlays().filter(|overlay| wanted(overlay.when) && is_on(overlay));
         View {
             shown: shown.map(|overlay| overlay.name).collect(),
             spacing_px: self.field_spacing(),

@@ -84,7 +84,7 @@ impl State {
             "close-panel" => return self.close(),
             "view-full-screen" => return Outcome::FullScreen,
             // Answered by others: the editor with a selection, whoever follows the scene with a connection.
-            "select-point" | TRY_NOW => {}
+            "select-point" | "next-sight" | TRY_NOW => {}
             "quit" => return Outcome::Quit,
             _ => return Outcome::Unknown,
         }

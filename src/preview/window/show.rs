@@ -33,6 +33,8 @@ pub struct Show {
     pub still: Synth,
     /// Pixels of the frames a pixel of the picture.
     pub frame_scale: f64,
+    /// Marks beside those of the overlays.
+    pub marks: Vec<Mark>,
 }
 
 impl Show {
@@ -44,7 +46,8 @@ impl Show {
         let factor = largest.div_ceil(most.max(1)).max(1);
         let frames = if factor > 1 { reduced(&synth, factor) } else { synth.clone() };
         let said = (factor > 1).then(|| format!("{width} x {height} is shown reduced {factor} times"));
-        (Show { document, scene, still: frames.unmoved(), synth, frames, frame_scale: 1.0 / factor as f64 }, said)
+        let (still, frame_scale) = (frames.unmoved(), 1.0 / factor as f64);
+        (Show { document, scene, still, synth, frames, frame_scale, marks: Vec::new() }, said)
     }
 
     /// Whether any layer has sprites, of which some can be left out.
@@ -169,7 +172,8 @@ impl Cached {
 
     fn make_fixed(&mut self, state: &State, show: &Show, letters: &Letters) {
         let view = state.fixed_view();
-        let found = overlay(&show.scene, Some(&show.synth), &view);
+        let mut found = overlay(&show.scene, Some(&show.synth), &view);
+        found.extend(show.marks.iter().cloned());
         self.grips = view.selection.as_deref().map_or_else(Vec::new, |at| grips(&show.document, at));
         self.fixed = Canvas::default();
         if state.shows("view-grid") {

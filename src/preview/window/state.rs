@@ -6,7 +6,7 @@ use kurbo::{Point, Size, Vec2};
 
 use super::own_view::OwnView;
 use super::thin::Thin;
-use super::transport::Transport;
+use super::transport::Playhead;
 use super::viewport::{Fit, Viewport};
 use super::words::{Words, Work};
 use crate::base::pointer::Pointer;
@@ -42,7 +42,7 @@ pub struct State {
     /// Zoom and place.
     pub viewport: Viewport,
     /// Playing.
-    pub transport: Transport,
+    pub transport: Playhead,
     /// The scene's timeline.
     pub timeline: Timeline,
     /// Which overlays and other switches are on.
@@ -87,8 +87,10 @@ pub struct State {
     pub under: Option<String>,
     /// What is selected in the editor, for people.
     pub selected: Option<String>,
-    /// That not all of the scene is shown.
-    pub left_out: Option<String>,
+    /// That not all of the scene is shown, or something in its place.
+    pub otherwise: Option<String>,
+    /// Whether the cameras of pictures are seen, to select one of them.
+    pub selects: bool,
     /// Frames a second, while it plays.
     pub fps: Option<f64>,
     /// Sprites that are left out, while it plays.
@@ -123,7 +125,7 @@ impl Default for State {
             own: None,
             sees_nothing: false,
             viewport: Viewport::default(),
-            transport: Transport::default(),
+            transport: Playhead::default(),
             timeline: Timeline::default(),
             switches: Switches::default(),
             passes: Vec::new(),
@@ -146,7 +148,8 @@ impl Default for State {
             jump: None,
             under: None,
             selected: None,
-            left_out: None,
+            otherwise: None,
+            selects: false,
             fps: None,
             thin: Thin::default(),
             arrow_scale: 1.0,

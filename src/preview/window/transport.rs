@@ -8,7 +8,7 @@ const SPEEDS: [f64; 6] = [0.1, 0.25, 0.5, 1.0, 2.0, 4.0];
 
 /// Where the animation stands.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Transport {
+pub struct Playhead {
     /// Whether it runs.
     pub playing: bool,
     /// Place in frames, from 0; between two frames while it runs.
@@ -33,13 +33,13 @@ pub enum Part {
     Between(f64, f64),
 }
 
-impl Default for Transport {
+impl Default for Playhead {
     fn default() -> Self {
-        Transport { playing: false, frame: 0.0, speed: 1.0, whole_frames: false, part: Part::All }
+        Playhead { playing: false, frame: 0.0, speed: 1.0, whole_frames: false, part: Part::All }
     }
 }
 
-impl Transport {
+impl Playhead {
     /// The place that is shown, in frames.
     pub fn shown(&self) -> f64 {
         if self.whole_frames { self.frame.floor() } else { self.frame }
@@ -182,7 +182,7 @@ mod tests {
             (Wrap::PingPong, 1.5, 1, 2.0),
             (Wrap::PingPong, 1.5, -1, 1.0),
         ] {
-            let mut transport = Transport { playing: true, frame: from, ..Transport::default() };
+            let mut transport = Playhead { playing: true, frame: from, ..Playhead::default() };
             transport.step(by, &timeline(wrap));
             assert_eq!((transport.playing, transport.frame), (false, to), "{wrap:?} {from} {by}");
         }
@@ -192,7 +192,7 @@ mod tests {
     fn frames_have_the_times_of_written_frames() {
         for wrap in [Wrap::Repeat, Wrap::PingPong, Wrap::Once] {
             for k in 0..4 {
-                let mut transport = Transport { frame: k as f64, ..Transport::default() };
+                let mut transport = Playhead { frame: k as f64, ..Playhead::default() };
                 let time = timeline(wrap).time_of(k);
                 assert_eq!(transport.scene_time(&timeline(wrap)), time, "{wrap:?} {k}");
                 transport.seek(time, &timeline(wrap));
@@ -204,7 +204,7 @@ mod tests {
     #[test]
     fn what_plays_once_stops_and_begins_again() {
         let timeline = timeline(Wrap::Once);
-        let mut transport = Transport { playing: true, ..Transport::default() };
+        let mut transport = Playhead { playing: true, ..Playhead::default() };
         transport.advance(60.0, &timeline);
         assert_eq!((transport.playing, transport.frame), (false, 3.0));
         transport.toggle(&timeline);
@@ -215,7 +215,7 @@ mod tests {
     fn a_part_is_played_again_and_again() {
         for wrap in [Wrap::Repeat, Wrap::Once] {
             let timeline = Timeline { duration: 8.0, fps: 1.0, wrap };
-            let mut transport = Transport { playing: true, frame: 5.0, ..Transport::default() };
+            let mut transport = Playhead { playing: true, frame: 5.0, ..Playhead::default() };
             let mut marked = |frame| {
                 transport.frame = frame;
                 transport.mark_part();
@@ -243,7 +243,7 @@ mod tests {
     #[test]
     fn speed_and_whole_frames() {
         let timeline = timeline(Wrap::Repeat);
-        let mut transport = Transport { playing: true, ..Transport::default() };
+        let mut transport = Playhead { playing: true, ..Playhead::default() };
         transport.change_speed(-1);
         transport.advance(1.25, &timeline);
         assert_eq!((transport.speed, transport.frame, transport.until_next(&timeline)), (0.5, 1.25, None));

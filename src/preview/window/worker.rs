@@ -15,6 +15,7 @@ use crate::base::error::Error;
 use crate::base::fault;
 use crate::base::problem::Problem;
 use crate::base::progress::Progress;
+use crate::layers::parts::marks::Mark;
 use crate::layers::parts::materials::Materials;
 use crate::layers::space::fit::Ball;
 use crate::preview::follow::Update;
@@ -22,6 +23,7 @@ use crate::preview::views::shows_otherwise;
 use crate::preview::wire::message::FromEditor;
 use crate::render::gpu::{Uploaded, Uploader};
 use crate::render::shown::Shown;
+use crate::render::sight::Sight;
 use crate::render::{self, Synth};
 use crate::scene::{Document, Scene, named};
 
@@ -75,8 +77,12 @@ pub struct Ready {
     pub synth_ms: f64,
     /// What is wrong with it, although it can be shown.
     pub problems: Vec<Problem>,
-    /// That not all of it is shown.
-    pub left_out: Option<String>,
+    /// That not all of it is shown, or something in its place.
+    pub otherwise: Option<String>,
+    /// Marks over it beside those of the overlays.
+    pub marks: Vec<Mark>,
+    /// Whether the cameras of pictures are seen, to select one of them.
+    pub selects: bool,
 }
 
 /// A scene whose textures are on the GPU.
@@ -115,6 +121,7 @@ impl Sending {
             let sent = progress("sending the picture to the GPU", send.clone());
             let make = || {
                 let (show, reduced) = Show::new(ready.document.clone(), ready.scene.clone(), ready.synth.clone(), most);
+                let show = Show { marks: ready.marks.clone(), ..show };
                 let uploaded = uploader.upload(&[&show.frames, &show.still], &sent, &stopped)?;
                 Ok((show, reduced, uploaded))
             };
@@ -264,9 +271,21 @@ fn synthesise(
                 problems.extend(synth.lacks());
                 let problems = named(&scene, problems);
                 let around = Ball::around(&|ways| render::reach(&synth.layers, TIMES, ways));
-                let left_out =
-                    Some(how.muted.len()).filter(|count| *count > 0).map(|count| format!("without {count} muted"));
-                send(Event::Ready(Ready { document, scene, synth, around, revision, synth_ms, problems, left_out }))?;
+                let otherwise = otherwise(&how, &scene);
+                let selects = how.sight.as_ref().is_some_and(Sight::selects);
+                let (scene, synth, marks) = how.seen(scene, synth);
+                send(Event::Ready(Ready {
+                    document,
+                    scene,
+                    synth,
+                    around,
+                    revision,
+                    synth_ms,
+                    problems,
+                    otherwise,
+                    marks,
+                    selects,
+                }))?;
             }
             // A missing picture was already found, with its reason, while it was loaded.
             Err(problem) => {
@@ -276,6 +295,21 @@ fn synthesise(
         }
     }
     Ok(())
+}
+
+/// In words, that not all of a scene is shown, or something in its place.
+fn otherwise(how: &Shown, scene: &Scene) -> Option<String> {
+    let muted = Some(how.muted.len()).filter(|count| *count > 0).map(|count| format!("without {count} muted"));
+    let sight = how.sight.as_ref().map(|sight| match sight {
+        Sight::From(_) => "select".to_owned(),
+        Sight::Painting { layer, picture, share } => {
+            let lying = scene.layers.get(*layer).and_then(|layer| layer.technique().lying()).unwrap_or_default();
+            let name = lying.get(*picture).map_or("", |lying| lying.name);
+            format!("painting {name}, {:.0} % of it", share * 100.0)
+        }
+    });
+    let all: Vec<String> = [sight, muted].into_iter().flatten().collect();
+    Some(all.join(", ")).filter(|all| !all.is_empty())
 }
 
 /// Problems of a scene with the names of what they are in.

@@ -81,8 +81,18 @@ fn hear(state: &mut State, event: editor::Event) {
         editor::Event::Said(ToEditor::Gesture(gesture)) => follow_window(state, gesture),
         editor::Event::Answered { silent } => camera::answered(state, &commands::TABLE, silent),
         editor::Event::Edit(asked) => answer(state, asked),
-        // The link has heard it. The loop on a screen asks for the status after every event.
-        editor::Event::Said(_) | editor::Event::Status => {}
+        // The link answers these. The loop on a screen asks for the status after every event.
+        editor::Event::Said(
+            ToEditor::Hello { .. }
+            | ToEditor::Ack { .. }
+            | ToEditor::WantScene
+            | ToEditor::Report { .. }
+            | ToEditor::Want { .. }
+            | ToEditor::Alive
+            | ToEditor::Answer(_)
+            | ToEditor::Edit { .. },
+        )
+        | editor::Event::Status => {}
     }
 }
 
@@ -282,6 +292,7 @@ fn run_of_window(state: &mut State, name: &str) {
         "mark-point" => commands::run(state, "pointer mark", None),
         "select-point" => commands::run(state, "pointer select", None),
         told if told.starts_with("band ") => commands::run(state, &format!("pointer {told}"), None),
+        "next-sight" => commands::run(state, "layout next", None),
         "undrag" => commands::run(state, "pointer undrag", None),
         told if ["drag ", "drop ", "take "].iter().any(|verb| told.starts_with(verb)) => {
             commands::run(state, &format!("pointer {told}"), None);

@@ -1,17 +1,11 @@
 //! A frame of a clip in place of the scene, for the pane in which pictures are picked from it.
 
-use std::sync::Arc;
-
 use kurbo::{Point, Rect};
-use serde_json::json;
 
-use crate::base::picture::Picture;
-use crate::layers::KINDS;
 use crate::layers::parts::marks::{Look, Mark, Shape};
-use crate::layers::parts::materials::{List, Materials};
 use crate::layers::parts::picking::Subject;
-use crate::layers::starts::NewLayer;
-use crate::render::{self, Synth};
+use crate::render::Synth;
+use crate::render::sight::alone;
 
 /// What is looked at in place of the scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,15 +39,4 @@ impl ClipView {
         };
         Some((alone(found.picture)?, found.marks.into_iter().map(told).collect(), found.side))
     }
-}
-
-/// A picture as a scene that shows nothing else.
-pub(super) fn alone(picture: Arc<Picture>) -> Option<Synth> {
-    const NAME: &str = "frame";
-    let templates = KINDS.iter().filter_map(|kind| kind.template);
-    let shows = templates.into_iter().find(|template| template.of == List::Images)?;
-    let layer = (shows.layer)(&NewLayer { name: NAME, bare: true, ..NewLayer::default() });
-    let scene = json!({ "plica": 1, "images": { NAME: { "path": NAME } }, "layers": [layer] });
-    let materials = Materials { pictures: [(NAME.to_owned(), picture)].into(), ..Materials::default() };
-    render::synth(&serde_json::from_value(scene).ok()?, &materials, None).ok()
 }

@@ -10,7 +10,6 @@ mod picture;
 pub mod probed;
 mod protocol;
 pub mod request;
-pub mod sight;
 mod sixel;
 pub mod viewport;
 

@@ -7,13 +7,13 @@ use ratatui::buffer::Buffer;
 
 use super::clip::square;
 use super::protocol::Wanted;
-use super::sight::Visible;
 use super::{encode, ink};
 use crate::base::pixels::Frame;
 use crate::layers::parts::marks::Mark;
 use crate::render::Synth;
 use crate::render::overlay::overlay;
 use crate::render::part::{self, Part};
+use crate::render::sight::Visible;
 use crate::scene::Scene;
 
 /// A picture ready to be written to the terminal.

@@ -3,10 +3,10 @@
 use kurbo::Point;
 
 use super::clip::ClipView;
-use super::sight::Sight;
 use crate::layers::parts::marks::View;
 use crate::render::part::Part;
 use crate::render::passes::Asked;
+use crate::render::sight::Sight;
 use crate::tui::text::color::Depth;
 
 /// How the picture reaches the terminal.

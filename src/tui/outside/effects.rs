@@ -58,6 +58,7 @@ impl Editor {
             Effect::Run(words) => self.start(&words, false),
             Effect::RunSeen(words) => self.start(&words, true),
             Effect::Compare => self.preview.view(&views::show_compared(self.state.apart.compared.as_deref())),
+            Effect::Sight => self.preview.view(&views::show_sight(self.state.picture.told.as_ref())),
             Effect::Mute => self.preview.view(&views::show_muted(&self.state.apart.hidden(self.state.document()))),
             Effect::Probe(words) if self.screen.is_none() => self.start(&words, false),
             Effect::Probe(_) => {}

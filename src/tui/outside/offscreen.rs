@@ -10,7 +10,7 @@ use crate::files::session::Mode;
 use crate::files::{self};
 use crate::tui::commands::update::update;
 use crate::tui::document::open_scene::OpenScene;
-use crate::tui::events::{Change, Effect, Event};
+use crate::tui::events::{Effect, Event, Published};
 use crate::tui::panes::view;
 use crate::tui::state::State;
 use crate::tui::text::color::Depth;
@@ -43,7 +43,7 @@ impl Offscreen {
     }
 
     /// Presses a key without drawing; returns the changes of the scene that are sent to windows.
-    pub fn take(&mut self, key: &str) -> Vec<Change> {
+    pub fn take(&mut self, key: &str) -> Vec<Published> {
         let effects = update(&mut self.state, Event::Key(key.to_owned()));
         let change = |effect| if let Effect::Publish(change) = effect { Some(*change) } else { None };
         effects.into_iter().filter_map(change).collect()

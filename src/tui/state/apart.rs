@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use crate::base::pointer::Pointer;
 use crate::render::shown::Shown;
 use crate::scene::Document;
-use crate::tui::events::Change;
+use crate::tui::events::Published;
 
 /// Layers and zones by their pointers, and what is compared.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -23,7 +23,7 @@ pub struct Apart {
 impl Apart {
     /// How the scene is shown.
     pub fn shown(&self, document: &Document) -> Shown {
-        Shown { muted: self.hidden(document), compared: self.compared.clone() }
+        Shown { muted: self.hidden(document), compared: self.compared.clone(), sight: None }
     }
 
     /// What is not shown.
@@ -52,7 +52,7 @@ impl Apart {
         letters.into_iter().filter(|(set, _)| set.contains(pointer)).map(|(_, letter)| letter).collect()
     }
 
-    pub(super) fn follow(&mut self, change: &Change) {
+    pub(super) fn follow(&mut self, change: &Published) {
         for set in [&mut self.muted, &mut self.solo, &mut self.locked] {
             *set = set.iter().filter_map(|pointer| change.edit.follow(&change.document, pointer)).collect();
         }

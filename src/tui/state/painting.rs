@@ -12,7 +12,8 @@ use crate::base::pointer::Pointer;
 use crate::layers::parts::shots::{Put, SeenFrom};
 use crate::layers::space::camera::Camera;
 use crate::layers::space::fit::{Ball, fit};
-use crate::tui::graphics::sight::Sight;
+use crate::render::sight::Sight;
+use crate::tui::events::Effect;
 use crate::tui::graphics::viewport::Viewport;
 
 /// How near to the poles one goes, in degrees.
@@ -117,8 +118,13 @@ pub fn size(state: &State) -> Option<(usize, usize)> {
     Some(painted().unwrap_or(synth.size))
 }
 
-/// Takes the size of what the pane shows now. Where it is another, the pane shows all of it.
+/// Has windows show what the pane shows, and takes the size of that. Where it is another, the pane shows all of it.
 pub fn follow(state: &mut State) {
+    let sight = sight(state);
+    if state.picture.told != sight {
+        state.picture.told = sight;
+        state.ask(Effect::Sight);
+    }
     let size = size(state);
     if state.picture.looking.is_some() || size.is_none() || state.picture.size == size {
         return;

@@ -9,6 +9,7 @@ use crate::layers::parts::picking::Subject;
 use crate::preview::views::Switches;
 use crate::render::Synth;
 use crate::render::passes::Asked;
+use crate::render::sight::Sight;
 use crate::scene::Scene;
 use crate::tui::graphics::counts::Counts;
 use crate::tui::graphics::probed::Probed;
@@ -30,6 +31,8 @@ pub struct Picture {
     pub looking: Option<Looking>,
     /// How one paints on a mesh, in the layout for that.
     pub painting: Option<Painting>,
+    /// What windows were told to show in place of what the camera sees.
+    pub told: Option<Sight>,
     /// Which overlays are shown here and in the windows. Those of the document alone are shown here until they are turned off.
     pub switches: Switches,
     /// Those of the document that were.
@@ -70,6 +73,7 @@ impl Picture {
             pass: None,
             looking: None,
             painting: None,
+            told: None,
             switches: Switches::default(),
             off: BTreeSet::new(),
             graphics: Graphics::default(),

@@ -12,12 +12,12 @@ use crate::files::materials::{self, Cache};
 use crate::layers::parts::marks::Shape;
 use crate::layers::space::camera::Camera;
 use crate::preview::wire::message::Gesture;
+use crate::render::sight::Sight;
 use crate::render::{self, cpu};
 use crate::tui::commands::update::update;
 use crate::tui::document::open_scene::OpenScene;
 use crate::tui::events::Effect;
 use crate::tui::graphics::TerminalPicture;
-use crate::tui::graphics::sight::Sight;
 use crate::tui::layout::{self, picture};
 use crate::tui::panes;
 use crate::tui::state::{State, place};
@@ -187,8 +187,8 @@ pub fn one_paints_in_three_views() {
     let places = [painting.wanted.part, results.wanted.part].map(|part| part.place_of(Point::new(39.0, 20.0)));
     let colors = [painting.color_at(places[0]), results.color_at(places[1])];
     assert!(colors[0] == colors[1] && colors[0].is_some_and(|[r, ..]| r == 0xa0), "{colors:?}");
-    press(&mut state, "z )");
-    assert_eq!(made(&state).wanted.sight, sight(0.625));
+    assert_eq!(press(&mut state, "z )").iter().filter(|effect| matches!(effect, Effect::Sight)).count(), 1);
+    assert_eq!((&made(&state).wanted.sight, &state.picture.told), (&sight(0.625), &sight(0.625)), "windows too");
     assert!(run(&mut state, "place add").0.contains(":layout results"));
     assert!(run(&mut state, "probe").0.contains(":layout results"));
     press(&mut state, "Tab");
@@ -215,6 +215,7 @@ pub fn one_paints_in_three_views() {
     assert_eq!((title(&state).as_str(), made(&state).frame == results.frame), ("results", true));
     press(&mut state, "Shift-Tab Shift-Tab Esc");
     assert_eq!((state.picture.size, state.picture.painting), (Some((24, 16)), None));
+    assert_eq!(state.picture.told, None, "windows show the results again");
     assert!(run(&mut state, "layout twice").0.starts_with("layout takes "));
 }
 
