@@ -13,7 +13,7 @@ use plica::preview::editor::{Event, Preview};
 use plica::preview::wire::frame;
 use plica::preview::wire::message::{FromEditor, ToEditor};
 use plica::scene::Document;
-use plica::tui::{Change, Offscreen};
+use plica::tui::{Offscreen, Published};
 
 const SIDE: usize = 512;
 const EDITS: u64 = 40;
@@ -50,7 +50,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (mut times, mut synths, mut bytes) = (Vec::new(), Vec::new(), Vec::new());
     for _ in 0..EDITS {
         let began = Instant::now();
-        let [Change { document, revision, edit }] = &keys.take("+")[..] else {
+        let [Published { document, revision, edit }] = &keys.take("+")[..] else {
             return Err("the key changes nothing".into());
         };
         editor.publish(document, *revision, edit);

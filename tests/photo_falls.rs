@@ -81,8 +81,8 @@ fn a_fall_in_a_photograph_moves_behind_its_rocks() {
     let rocks = ROCKS.map(|corners| Polygon::new(corners.iter().map(|&corner| Point::from(corner)).collect()));
     let mut cut = image::open(&photo).unwrap().to_rgba8();
     for (x, y, pixel) in cut.enumerate_pixels_mut() {
-        let centre = Point::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
-        pixel.0[3] = if rocks.iter().any(|rock| rock.contains(centre)) { 255 } else { 0 };
+        let center = Point::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+        pixel.0[3] = if rocks.iter().any(|rock| rock.contains(center)) { 255 } else { 0 };
     }
     cut.save(at("rocks.png")).unwrap();
     let scene = include_str!("photos/falls.plica.json");

@@ -11,6 +11,7 @@ use std::path::Path;
 
 use plica::base::pixels::Frame;
 use plica::export::textures::{Depth, write};
+use plica::layers::folding::{fold::Fold, position::Position};
 use plica::render;
 use serde_json::Value;
 
@@ -265,7 +266,11 @@ const TIMES: [f64; 9] = [0.0, 1.0, 3.6, 3.6005, 5.3, 6.0, 7.2, 10.0, 11.9993];
 
 #[test]
 fn every_position_function_plays() {
-    for case in scenes::functions() {
+    let cases = scenes::functions();
+    for function in scenes::variants::<Position>("function") {
+        assert!(cases.iter().any(|case| case.name.contains(&format!("\"{function}\""))), "no scene with {function}");
+    }
+    for case in cases {
         let far = far(&case, Depth::Float, false, &TIMES, 2);
         assert!(far * 1000 <= 80 * 60, "{}: {far} pixels", case.name);
     }
@@ -273,7 +278,11 @@ fn every_position_function_plays() {
 
 #[test]
 fn every_rule_and_several_layers_play() {
-    for case in scenes::rules() {
+    let cases = scenes::rules();
+    for rule in scenes::variants::<Fold>("rule") {
+        assert!(cases.iter().any(|case| case.name.starts_with(&rule)), "no scene folds by {rule}");
+    }
+    for case in cases {
         let far = far(&case, Depth::Float, false, &TIMES, 2);
         assert!(far * 1000 <= 80 * 60, "{}: {far} pixels", case.name);
     }

@@ -304,7 +304,7 @@ mod tests {
     }
 
     #[test]
-    fn a_read_at_a_centre_is_the_pixel() {
+    fn a_read_at_a_center_is_the_pixel() {
         let mut p = Linear::filled(3, 2, [0.0; 4]);
         p.cells_mut()[4] = [1.0, 0.5, 0.25, 1.0];
         assert_eq!(p.read(1.5, 1.5, Beyond::Clamp), [1.0, 0.5, 0.25, 1.0]);

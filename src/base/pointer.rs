@@ -58,6 +58,11 @@ impl<'a> Pointer<'a> {
         self.below(outer).is_some()
     }
 
+    /// Whether this is below `outer`.
+    pub fn is_inside(self, outer: &str) -> bool {
+        self.below(outer).is_some_and(|way| !way.is_empty())
+    }
+
     /// The index of the item of `list` that this is.
     pub fn item(self, list: &str) -> Option<usize> {
         self.item_of(list).filter(|(_, way)| way.is_empty()).map(|(index, _)| index)
@@ -139,6 +144,7 @@ mod tests {
             ("", "/a", None),
         ] {
             assert_eq!(Pointer(inner).below(outer), way, "{inner} in {outer}");
+            assert_eq!(Pointer(inner).is_inside(outer), inner != outer && way.is_some(), "{inner} in {outer}");
         }
         for (inner, item) in [
             ("/a/1/b", Some((1, "/b"))),
@@ -149,6 +155,8 @@ mod tests {
             ("/b/1", None),
         ] {
             assert_eq!(Pointer(inner).item_of("/a"), item, "{inner}");
+            let whole = item.filter(|(_, way)| way.is_empty()).map(|(index, _)| index);
+            assert_eq!(Pointer(inner).item("/a"), whole, "{inner}");
         }
     }
 }

@@ -158,8 +158,8 @@ pub trait Technique: Any + Send + Sync {
         None
     }
 
-    /// The names of what stands in the list or the map at `path` though it is not written, as what a style has, in order;
-    /// what is written there lies over it by name. `None` where nothing does.
+    /// The names of the items that the list or map at `path` has without their being written, in order: those of a style,
+    /// for example. An item that is written replaces the fields that it sets of the one of its name. `None` if there are none.
     fn laid(&self, _path: &str) -> Option<Vec<String>> {
         None
     }

@@ -11,6 +11,14 @@ pub fn variants<T: schemars::JsonSchema>(tag: &str) -> Vec<String> {
     branches.iter().map(|branch| branch["properties"][tag]["const"].as_str().unwrap().to_owned()).collect()
 }
 
+/// The words of a choice, from its schema.
+pub fn words<T: schemars::JsonSchema>() -> Vec<String> {
+    let schema = serde_json::Value::from(schemars::schema_for!(T));
+    let of = |list: &serde_json::Value| list.as_array().cloned().unwrap_or_default();
+    let word = |one: serde_json::Value| one.get("const").unwrap_or(&one).as_str().map(str::to_owned);
+    of(&schema["oneOf"]).into_iter().chain(of(&schema["enum"])).filter_map(word).collect()
+}
+
 #[test]
 fn every_kind_of_layer_is_in_the_list() {
     let listed: BTreeSet<String> = KINDS.iter().map(|kind| kind.name.to_owned()).collect();

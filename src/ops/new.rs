@@ -8,6 +8,7 @@ use super::Context;
 use super::check::made;
 use super::scene_options::SceneOptions;
 use crate::base::error::{Error, Result};
+use crate::base::pointer::Pointer;
 use crate::base::problem::{Problem, Severity};
 use crate::files::clips::ClipFiles;
 use crate::files::materials::{self, Cache};
@@ -206,7 +207,7 @@ impl Making<'_> {
         let (materials, problems) =
             materials::gather(&found.folder.join("scene"), document.scene(), self.options, &mut cache);
         // Whether a layer fits is only known after the clip.
-        let of_clip = |problem: &Problem| !problem.path.starts_with("/layers");
+        let of_clip = |problem: &Problem| !Pointer(&problem.path).is_within("/layers");
         let (mut problems, _): (Vec<Problem>, Vec<Problem>) = problems.into_iter().partition(of_clip);
         let Some(clip) = materials.clips.get(&called) else { return Err(refused(problems)) };
         let mut known = Known { size_px: clip.size_px(), frames: clip.frames.len(), is_still: false };

@@ -129,7 +129,7 @@ pub(super) type Slot<T> = Arc<Mutex<Option<(MadeOf, Arc<T>)>>>;
 pub struct DrawnPass {
     pub(super) pass: Pass,
     pub(super) of: Option<String>,
-    /// One for each group, all its pixels; `None` where nothing is drawn.
+    /// One for each group, all its pixels; `None` if nothing is drawn.
     pub groups: Vec<Option<Vec<Rgba>>>,
 }
 

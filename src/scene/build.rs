@@ -334,7 +334,7 @@ impl<'a> Fresh<'a> {
     pub(super) fn starts(document: &Document, path: &str) -> &'static Starts {
         match Fresh::layer(document, path) {
             Some((layer, _)) => &layer.kind().starts,
-            None if path.starts_with("/camera/") => &camera::STARTS,
+            None if Pointer(path).is_inside("/camera") => &camera::STARTS,
             None => &Starts::PLAIN,
         }
     }

@@ -196,7 +196,7 @@ fn step(json: &mut Value, operation: &PatchOperation) -> Result<Edit, Problem> {
         }
         PatchOperation::Move(one) => {
             let from = one.from.as_str();
-            if path.strip_prefix(from).is_some_and(|rest| rest.starts_with('/')) {
+            if Pointer(path).is_inside(from) {
                 return Err(Problem::error(path, format!("{from} cannot be moved into itself")));
             }
             let (value, back) = remove(json, from)?;

@@ -81,9 +81,8 @@ pub fn dragged(document: &Document, pointer: &str, to: Point) -> Option<Vec<(Str
 
 /// The shape of the scene that a pointer is in.
 fn shape_of(pointer: &str) -> Option<&str> {
-    let name = Pointer(pointer).below("/shapes")?.strip_prefix('/')?;
-    let end = name.find('/').map_or(pointer.len(), |end| pointer.len() - name.len() + end);
-    Some(&pointer[..end])
+    let (_, way) = Pointer(Pointer(pointer).below("/shapes")?).first()?;
+    pointer.strip_suffix(way)
 }
 
 fn collect(place: Place, at: &str, selection: &str, found: &mut Vec<Grip>) {

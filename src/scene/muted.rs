@@ -14,7 +14,7 @@ impl Scene {
         let start = format!("/layers/{index}");
         let inner = Pointer(pointer)
             .upward()
-            .find(|at| at.strip_prefix(&start).is_some_and(|way| layer.technique().can_mute(way)));
+            .find(|at| Pointer(at).below(&start).is_some_and(|way| layer.technique().can_mute(way)));
         Some(inner.map_or(start, str::to_owned))
     }
 

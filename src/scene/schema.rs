@@ -220,8 +220,8 @@ impl Shape {
         self.site.get("named").and_then(Value::as_str)
     }
 
-    /// How something in this list or map is left out that stands there though it is not written, as what a style has: by
-    /// `null`, or by a field of it that is true. Names lead to items of such a list, also to those that are not written.
+    /// How an item of this list or map that is there without being written, such as one of a style, is left out: by writing
+    /// `null`, or by a field of it that is true. Items of such a list are addressed by name, also those that are not written.
     pub fn laid(self) -> Option<&'static str> {
         self.site.get("laid").and_then(Value::as_str)
     }

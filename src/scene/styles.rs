@@ -101,8 +101,8 @@ fn fits_into(document: &Document, edit: &Edit, path: &str) -> Result<(), String>
     problems.iter().find_map(own).map_or(Ok(()), |problem| Err(problem.to_string()))
 }
 
-/// What changes the style of a layer to that of this name, if `pointer` is where the name is written and the style is one of the
-/// program: what is written over the old one goes with it.
+/// The edit that changes the style of a layer to the built-in one of this name, if `pointer` is where the name is written. What
+/// was changed of the old style is dropped.
 pub fn renamed(document: &Document, pointer: &str, name: &str) -> Option<Edit> {
     let (index, way) = Pointer(pointer).item_of("/layers")?;
     let styles = document.scene().layers.get(index)?.technique().kind().styles?;
@@ -116,7 +116,7 @@ pub fn renamed(document: &Document, pointer: &str, name: &str) -> Option<Edit> {
 /// The table of everything that is in force in the layer `name`, or in the first one that is drawn in a style.
 ///
 /// # Errors
-/// There is no such layer, or it is drawn in none.
+/// There is no such layer, or it has no style.
 pub fn in_force(document: &Document, name: Option<&str>) -> Result<Value, String> {
     let (index, styles, path) = styled(document, name, "a style", &|kind| kind.styles.is_some())?;
     let layer = document.scene().layers[index].technique().name();

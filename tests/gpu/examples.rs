@@ -64,6 +64,14 @@ pub fn examples_of_all() -> Vec<(&'static str, Scene, Materials)> {
 }
 
 #[test]
+fn every_surface_is_in_an_example() {
+    let scenes = examples_of_all().into_iter().map(|(_, scene, _)| serde_json::to_value(scene).unwrap());
+    let layers: Vec<Value> = scenes.flat_map(|scene| scene["layers"].as_array().unwrap().clone()).collect();
+    let found = layers.iter().filter_map(|layer| Some(layer["surface"]["kind"].as_str()?.to_owned())).collect();
+    assert_eq!(variants::<Surface>("kind"), found);
+}
+
+#[test]
 fn every_overlay_draws_something_over_an_example_of_its_technique() {
     let (mut something, mut all) = (BTreeSet::new(), BTreeSet::new());
     for (kind, scene, materials) in examples_of_all() {

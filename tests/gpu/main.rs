@@ -29,6 +29,7 @@ use plica::export::textures::{self, Depth};
 use plica::files::{self, outputs::Guard};
 use plica::layers::KINDS;
 use plica::layers::folding::fold::Fold;
+use plica::layers::mesh::slots::Surface;
 use plica::layers::mesh::slots::strokes::model::{Along, Anchor, By, Trim};
 use plica::layers::parts::marks::View;
 use plica::layers::parts::materials::{List, Materials, Of, Use, What};
@@ -199,11 +200,11 @@ fn check(gpu: &mut Gpu, name: &str, synth: &Synth, time: f64) {
     assert!(largest <= 2 || !WITHOUT_SILHOUETTES.contains(&name), "{name} at {time}: {largest}");
 }
 
-/// The fold rules of the schema.
-fn rules() -> Vec<String> {
-    let schema = Value::from(schemars::schema_for!(Fold));
-    let rule = |branch: &Value| branch["properties"]["rule"]["const"].as_str().unwrap().to_owned();
-    schema["oneOf"].as_array().unwrap().iter().map(rule).collect()
+/// The variants of a tagged type of the document, from its schema.
+fn variants<T: schemars::JsonSchema>(tag: &str) -> BTreeSet<String> {
+    let schema = Value::from(schemars::schema_for!(T));
+    let variant = |branch: &Value| branch["properties"][tag]["const"].as_str().unwrap().to_owned();
+    schema["oneOf"].as_array().unwrap().iter().map(variant).collect()
 }
 
 /// The words that a choice of the schema allows.
@@ -218,7 +219,7 @@ fn words<T: schemars::JsonSchema>() -> Vec<String> {
 fn the_gpu_shows_what_the_cpu_shows() {
     let Some(mut gpu) = gpu() else { return };
     let scenes = scenes();
-    for rule in rules() {
+    for rule in variants::<Fold>("rule") {
         assert!(scenes.iter().any(|(name, _)| *name == rule), "no scene folds by {rule}");
     }
     assert!(WITHOUT_SILHOUETTES.iter().all(|name| scenes.iter().any(|(known, _)| known == name)));

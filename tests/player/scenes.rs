@@ -9,6 +9,13 @@ use plica::layers::parts::materials::Materials;
 use plica::scene::Scene;
 use serde_json::{Value, json};
 
+/// The variants of a tagged type of the document, from its schema.
+pub fn variants<T: schemars::JsonSchema>(tag: &str) -> Vec<String> {
+    let schema = Value::from(schemars::schema_for!(T));
+    let branches = schema["oneOf"].as_array().unwrap();
+    branches.iter().map(|branch| branch["properties"][tag]["const"].as_str().unwrap().to_owned()).collect()
+}
+
 pub struct Case {
     pub name: String,
     pub scene: Scene,

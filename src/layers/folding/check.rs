@@ -8,7 +8,7 @@ use kurbo::{Point, Rect, Vec2};
 use super::anchor::Anchor;
 use super::interpolation::Interpolation;
 use super::position::{Pieces, Position};
-use super::{counts, fold::Fold, needs, outline::Outline};
+use super::{counts, needs, outline::Outline};
 use super::{model::PictureLayer, model::Zone};
 use crate::base::crossings::{emptiness, self_crossing};
 use crate::base::geometry::FLATNESS_PX;
@@ -102,7 +102,7 @@ fn check_zone(zone: &Zone) -> Vec<Problem> {
     let regions = zone.fold.iter().flat_map(|fold| fold.regions()).enumerate();
     problems.extend(regions.flat_map(|(i, region)| outline(region, &format!("/fold/regions/{i}"))));
     problems.extend(zone.interpolation.check().map(|problem| problem.under("/interpolation")));
-    if matches!(zone.fold, Some(Fold::Mask { .. })) && zone.sampler.is_some() {
+    if zone.fold.as_ref().is_some_and(|fold| fold.mask().is_some()) && zone.sampler.is_some() {
         let hint = "remove either the fold or the sampler";
         problems.push(Problem::error("/fold", "a mask and a sampler image do not go together").hint(hint));
     }
@@ -142,13 +142,12 @@ fn outline(outline: &Outline, path: &str) -> Vec<Problem> {
         return Vec::new();
     }
     let polygon = outline.polygon();
-    let drawn = !matches!(outline, Outline::Rectangle { .. } | Outline::Ellipse { .. });
+    let drawn = outline.is_drawn();
     if let Some(what) = emptiness(&polygon) {
         let what = if drawn { what } else { "has no area: it is too narrow" };
         return vec![Problem::error(path, format!("the outline {what}"))];
     }
-    let curved = matches!(outline, Outline::Path { .. } | Outline::Shapes { .. });
-    let slack = if curved { FLATNESS_PX } else { 0.0 };
+    let slack = if outline.is_curved() { FLATNESS_PX } else { 0.0 };
     let crossing = if drawn { self_crossing(&polygon, slack) } else { None };
     let message = |Point { x, y }| format!("the outline crosses itself near ({x:.1}, {y:.1})");
     let hint = "what it encloses twice is outside (even-odd)";

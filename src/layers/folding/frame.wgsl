@@ -91,7 +91,7 @@ fn pixel_of_picture(at: vec2i) -> vec4f {
     return select(vec4f(0.0), color, all(at == edge));
 }
 
-// The bilinear read at q + d for the pixel whose centre is q: only d has a fractional part.
+// The bilinear read at q + d for the pixel whose center is q: only d has a fractional part.
 fn read(pixel: vec2i, d: vec2f) -> vec4f {
     let whole = floor(d);
     let part = d - whole;

@@ -73,4 +73,20 @@ impl Outline {
             Outline::Path { nodes } | Outline::Shapes { nodes, .. } => Polygon::flatten(&bezier(nodes, true)),
         }
     }
+
+    /// Whether it is drawn point by point, so that it can cross itself.
+    pub fn is_drawn(&self) -> bool {
+        match self {
+            Outline::Polygon { .. } | Outline::Path { .. } | Outline::Shapes { .. } => true,
+            Outline::Rectangle { .. } | Outline::Ellipse { .. } => false,
+        }
+    }
+
+    /// Whether the polygon is only as near to it as curves are flattened.
+    pub fn is_curved(&self) -> bool {
+        match self {
+            Outline::Ellipse { .. } | Outline::Path { .. } | Outline::Shapes { .. } => true,
+            Outline::Rectangle { .. } | Outline::Polygon { .. } => false,
+        }
+    }
 }

@@ -48,10 +48,10 @@ pub fn probe(
 ) -> Result<Option<Probe>, Problem> {
     let &Making { wrap, materials, .. } = making;
     let own = materials.picture(&layer.image, "/image")?;
-    let centre = Point::new(x as f64 + 0.5, y as f64 + 0.5);
+    let center = Point::new(x as f64 + 0.5, y as f64 + 0.5);
     for (index, zone) in layer.zones.iter().enumerate().rev() {
         // Preparing a zone is expensive, so it is done only for one that may contain the pixel.
-        if !zone.outline.polygon().bounds().contains(centre) {
+        if !zone.outline.polygon().bounds().contains(center) {
             continue;
         }
         let inputs = Inputs::new(zone, (own.width(), own.height()), CENTER);
@@ -61,7 +61,7 @@ pub fn probe(
             let source = source(layer, index, &own, making)?;
             let clock = zone.clock(wrap);
             let frame = source.clip.as_ref().map(|playing| playing.frame_at(time));
-            return Ok(Some(Probe { frame, ..at(zone, &pixel, &clock, centre + source.offset, time) }));
+            return Ok(Some(Probe { frame, ..at(zone, &pixel, &clock, center + source.offset, time) }));
         }
     }
     Ok(None)

@@ -192,7 +192,7 @@ impl Technique for MeshLayer {
     }
 
     fn is_in_model(&self, path: &str) -> bool {
-        path.starts_with("/surface/")
+        Pointer(path).is_inside("/surface")
     }
 
     fn bounds(&self, _path: &str) -> Rect {

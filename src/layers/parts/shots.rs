@@ -16,7 +16,7 @@ use crate::base::pixels::Linear;
 /// How much the shape of a picture may differ from that of its camera, as a share.
 const SHAPE_OFF: f64 = 0.01;
 
-/// What is wrong with a picture of this size, in pixels, for a camera that is for another; `None` where both have the same
+/// What is wrong with a picture of this size, in pixels, for a camera that is for another; `None` if both have the same
 /// shape.
 pub fn misshapen([width, height]: [u32; 2], [own_width, own_height]: [u32; 2]) -> Option<String> {
     let shape = |width: u32, height: u32| f64::from(width) / f64::from(height);

@@ -22,7 +22,7 @@ const SAME_UNITS: f64 = 3.0;
 const STEPS: usize = 8;
 
 /// How far something reaches along each of some ways of the world: the greatest scalar product of one of its points with
-/// it. `None` where there is nothing.
+/// it. `None` if there is nothing.
 pub type Reach<'a> = &'a dyn Fn(&[DVec3]) -> Option<Vec<f64>>;
 
 /// The middle of the box along the axes of the world around something.

@@ -226,6 +226,8 @@ fn node<'a>(values: &'a Values, path: &str) -> Result<(usize, &'a Node), String>
 mod tests {
     use super::*;
     use crate::layers::space::camera::Camera;
+    use crate::layers::tests::words;
+    use crate::layers::waterfall::model::{DragModel, WindMode};
 
     fn layer(more: &Value) -> WaterfallLayer {
         let mut json = json!({ "name": "falls" });
@@ -238,8 +240,8 @@ mod tests {
     #[test]
     fn what_is_solved_for_comes_out() {
         let node: Value = serde_json::from_str(NODE).unwrap();
-        for model in ["none", "constant", "linear", "quadratic"] {
-            for wind in ["additive", "relax"] {
+        for model in words::<DragModel>() {
+            for wind in words::<WindMode>() {
                 for rate in [0.0, 0.6, 4.0] {
                     let layer = layer(&json!({
                         "drag": { "model": model, "amount": 0.5 },

@@ -110,7 +110,7 @@ impl io::Write for Room {
 }
 
 /// How the document changed since the window was last told.
-enum Change {
+enum Pending {
     None,
     Joined { edits: Vec<Arc<Edit>>, bytes: usize },
     Whole,
@@ -121,7 +121,7 @@ pub(in crate::preview) struct Outbox {
     /// The revision last sent, and whether its answer is still owed.
     sent: u64,
     owed: bool,
-    change: Change,
+    change: Pending,
     due: VecDeque<Kind>,
     views: VecDeque<String>,
     /// Pieces of files that the window waits for: hash and offset.
@@ -159,25 +159,25 @@ impl Outbox {
     pub fn greeted(latest: &Latest) -> Self {
         let due = latest.said.iter().map(discriminant).collect();
         let (views, wants) = (VecDeque::new(), VecDeque::new());
-        Outbox { sent: latest.revision, owed: true, change: Change::None, due, views, wants }
+        Outbox { sent: latest.revision, owed: true, change: Pending::None, due, views, wants }
     }
 
     /// The document changed by `edit`.
     pub fn edited(&mut self, edit: &Measured) {
-        let (mut edits, sum) = match std::mem::replace(&mut self.change, Change::Whole) {
-            Change::None => (Vec::new(), edit.bytes),
-            Change::Joined { edits, bytes } => (edits, edit.bytes.map(|more| bytes + more)),
-            Change::Whole => return,
+        let (mut edits, sum) = match std::mem::replace(&mut self.change, Pending::Whole) {
+            Pending::None => (Vec::new(), edit.bytes),
+            Pending::Joined { edits, bytes } => (edits, edit.bytes.map(|more| bytes + more)),
+            Pending::Whole => return,
         };
         if let Some(bytes) = sum.filter(|&bytes| bytes <= MAX_PATCH) {
             edits.push(edit.edit.clone());
-            self.change = Change::Joined { edits, bytes };
+            self.change = Pending::Joined { edits, bytes };
         }
     }
 
     /// The window's copy does not fit: it gets the whole document at once.
     pub fn want_scene(&mut self) {
-        self.change = Change::Whole;
+        self.change = Pending::Whole;
         self.owed = false;
     }
 
@@ -211,10 +211,10 @@ impl Outbox {
     pub fn next(&mut self, latest: &Latest) -> Option<Outgoing> {
         if !self.owed {
             let (from_revision, to_revision) = (self.sent, latest.revision);
-            let next = match std::mem::replace(&mut self.change, Change::None) {
-                Change::None => None,
-                Change::Joined { edits, .. } => Some(Outgoing::Patch { from_revision, to_revision, edits }),
-                Change::Whole => Some(Outgoing::Scene { document: latest.document.clone(), revision: to_revision }),
+            let next = match std::mem::replace(&mut self.change, Pending::None) {
+                Pending::None => None,
+                Pending::Joined { edits, .. } => Some(Outgoing::Patch { from_revision, to_revision, edits }),
+                Pending::Whole => Some(Outgoing::Scene { document: latest.document.clone(), revision: to_revision }),
             };
             if next.is_some() {
                 (self.sent, self.owed) = (to_revision, true);
@@ -312,7 +312,7 @@ mod tests {
             outbox.view(&i.to_string());
             outbox.due(selection);
         }
-        assert!(matches!(outbox.change, Change::Whole));
+        assert!(matches!(outbox.change, Pending::Whole));
         assert_eq!((outbox.views.len(), outbox.due.len()), (MAX_VIEWS, 2));
         assert_eq!(outbox.views.back().unwrap(), "99999");
     }

@@ -24,22 +24,31 @@ pub const COMMANDS: &[Command] = &[
 
 /// Does what was chosen. After looking at a difference, the question `asked` comes again.
 pub fn answer(state: &mut State, about: About, word: &str, asked: Choice) -> Done {
-    match (about, word) {
-        (About::Holder, "quit") => state.ask(Effect::Quit),
-        (About::Holder, "edit") => state.ask(Effect::TakeOver),
-        (About::Recovery, "recover") => return recover(state, true),
-        (About::Recovery, "leave") => return recover(state, false),
-        (About::Recovery, _) if word == "difference" => {
-            let lines = state.scene.offered().map(|offer| offer.words.clone()).unwrap_or_default();
-            look(state, lines, asked);
-        }
-        (About::File, "mine") => return take_in(state, Some(Side::Mine)),
-        (About::File, "theirs") => return take_in(state, Some(Side::Theirs)),
-        (About::File, "difference") => {
-            let lines = state.scene.difference().map_err(|error| error.to_string())?;
-            look(state, lines, asked);
-        }
-        _ => {}
+    match about {
+        About::Holder => match word {
+            "quit" => state.ask(Effect::Quit),
+            "edit" => state.ask(Effect::TakeOver),
+            // Looking on is what is done already.
+            _ => {}
+        },
+        About::Recovery => match word {
+            "recover" => return recover(state, true),
+            "leave" => return recover(state, false),
+            "difference" => {
+                let lines = state.scene.offered().map(|offer| offer.words.clone()).unwrap_or_default();
+                look(state, lines, asked);
+            }
+            _ => {}
+        },
+        About::File => match word {
+            "mine" => return take_in(state, Some(Side::Mine)),
+            "theirs" => return take_in(state, Some(Side::Theirs)),
+            "difference" => {
+                let lines = state.scene.difference().map_err(|error| error.to_string())?;
+                look(state, lines, asked);
+            }
+            _ => {}
+        },
     }
     Ok(())
 }

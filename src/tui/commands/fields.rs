@@ -43,8 +43,9 @@ pub fn all(state: &State) -> Vec<Column> {
     let document = state.document();
     let mut found = Vec::new();
     walk(document, Place::root(document.json()), "", 0, &mut found);
-    let shown = Pointer(&state.cursor.node).tokens().take(2).collect::<Vec<_>>().join("/");
-    found.sort_by_key(|one| !one.pointer.trim_start_matches('/').starts_with(&shown));
+    let mut around = Pointer(&state.cursor.node).upward();
+    let shown = around.find(|at| Pointer(at).tokens().count() <= 2).unwrap_or_default();
+    found.sort_by_key(|one| !Pointer(&one.pointer).is_within(shown));
     found
 }
 

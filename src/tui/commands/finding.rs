@@ -159,7 +159,8 @@ fn find(state: &mut State, steps: i64, whole: bool) -> Option<Match> {
     let sought = Sought::new(&sought_text);
     let matches = listed.iter().enumerate().filter_map(|(i, one)| Some((i, one.matched(&sought)?)));
     let all: Vec<(usize, usize)> = matches.collect();
-    let is_called = |(i, _): &&(usize, usize)| listed[*i].pointer.rsplit('/').next() == Some(&sought_text);
+    let is_called =
+        |(i, _): &&(usize, usize)| Pointer(&listed[*i].pointer).split().is_some_and(|(_, name)| name == sought_text);
     let called: Vec<(usize, usize)> = all.iter().filter(is_called).copied().collect();
     let matches = if whole && !called.is_empty() { &called } else { &all };
     let count = matches.len();

@@ -248,7 +248,7 @@ fn delete(state: &mut State, call: &Call) -> Done {
 
 const NOTHING: &str = "there is nothing to delete here";
 
-/// How something is left out that stands in a list or a map though it is not written.
+/// What to set so that an item that is there without being written is left out.
 fn kept(document: &Document, pointer: &str) -> Option<String> {
     let (holder, name) = Pointer(pointer).split()?;
     let laid = Place::of(document.json(), holder)?.shape.laid().filter(|_| field::is_there(document, pointer))?;

@@ -95,7 +95,7 @@ fn number(state: &State, field: &str) -> Option<f64> {
 fn selected(state: &State) -> Option<String> {
     let row = state.sheet().pointer(state.cursor.row)?;
     let layer = state.picture.looking?.layer;
-    row.starts_with(&format!("/layers/{layer}{}/", picks(state)?.list)).then_some(row)
+    Pointer(&row).is_inside(&format!("/layers/{layer}{}", picks(state)?.list)).then_some(row)
 }
 
 /// Shows the frame of the selected pick, with the cursor on it.

@@ -122,7 +122,7 @@ fn found(state: &State, words: &[String]) -> Result<Vec<Replacement>, String> {
                 let new = text.replace(from.as_str(), to);
                 match kind_of(document, pointer) {
                     // A path has to lead somewhere.
-                    Some(Kind::Text) if pointer.ends_with("/path") && !is_file(state, &new) => {
+                    Some(Kind::Text) if is_path(pointer) && !is_file(state, &new) => {
                         missing = Some((address.clone(), new))
                     }
                     Some(Kind::Text) => add(text.clone(), New::Value(new.clone().into(), new)),
@@ -159,6 +159,11 @@ fn kind_of(document: &Document, pointer: &str) -> Option<Kind> {
 fn is_file(state: &State, path: &str) -> bool {
     let place = paths::beside(state.scene.path(), path);
     place.exists() || path.contains('%') && clips::find(&place).is_ok()
+}
+
+/// Whether a value is the path of a file.
+fn is_path(pointer: &str) -> bool {
+    Pointer(pointer).split().is_some_and(|(_, name)| name == "path")
 }
 
 /// A number, or the numbers of a vector, with one of them replaced.

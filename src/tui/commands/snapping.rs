@@ -4,6 +4,7 @@ use kurbo::{Point, Vec2};
 
 use super::command::{Call, Command, Done, command};
 use crate::base::maths;
+use crate::base::pointer::Pointer;
 use crate::layers::parts::marks::{Shape, View};
 use crate::render::overlay;
 use crate::tui::document::{places, tree};
@@ -48,10 +49,11 @@ fn nearest(here: Point, all: impl Iterator<Item = Point>) -> Option<Point> {
 
 /// All places of the layer that is shown, and of the shapes of the scene, but for the selected one.
 fn points(state: &State) -> Vec<Point> {
-    let layer = format!("/layers/{}/", tree::layer_of(&state.cursor.node).unwrap_or(0));
+    let layer = format!("/layers/{}", tree::layer_of(&state.cursor.node).unwrap_or(0));
     let own = state.focused();
     let all = places::list(state.document()).into_iter().map(|listed| listed.pointer);
-    let all = all.filter(|at| (at.starts_with(&layer) || at.starts_with("/shapes/")) && !at.starts_with(&own));
+    let may_be = |at: Pointer| (at.is_within(&layer) || at.is_within("/shapes")) && !at.is_within(&own);
+    let all = all.filter(|at| may_be(Pointer(at)));
     all.filter_map(|at| place::of(state.document(), &at)).collect()
 }
 

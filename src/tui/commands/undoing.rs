@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use super::command::{Call, Command, Done, command};
 use crate::tui::document::open_scene::OpenScene;
-use crate::tui::events::Change;
+use crate::tui::events::Published;
 use crate::tui::state::{Mode, Pages, State};
 
 pub const COMMANDS: &[Command] = &[
@@ -42,7 +42,7 @@ const MOST_TOLD: usize = 500;
 #[derive(Clone, Copy)]
 struct Way {
     back: bool,
-    step: fn(&mut OpenScene) -> Option<Change>,
+    step: fn(&mut OpenScene) -> Option<Published>,
     /// A step in words, by its distance; 1 is the next one.
     told: fn(&OpenScene, usize) -> Option<String>,
     done: &'static str,
@@ -93,7 +93,7 @@ fn travel(
     state: &mut State,
     call: &Call,
     way: Way,
-    by: fn(&mut OpenScene, Duration) -> (usize, Option<Change>),
+    by: fn(&mut OpenScene, Duration) -> (usize, Option<Published>),
 ) -> Done {
     state.scene.writable()?;
     if call.text.is_empty() || call.text.bytes().all(|b| b.is_ascii_digit()) {

@@ -91,11 +91,10 @@ pub fn options(document: &Document, kind: &Kind) -> Vec<(String, String)> {
 pub fn of_cell(document: &Document, cell: &Cell, others: Vec<String>) -> Option<Choice> {
     let options = options(document, &cell.field.kind);
     let at = options.iter().position(|(word, _)| *word == cell.text).unwrap_or(0);
-    let parent = Pointer(&cell.pointer).parent().unwrap_or_default().to_owned();
-    let tag = field::field(document, &parent).is_some_and(
-        |field| matches!(field.kind, Kind::Tagged { tag, .. } if cell.pointer.ends_with(&format!("/{tag}"))),
-    );
-    let then = if tag { Then::Become(parent) } else { Then::Set(others) };
+    let (parent, last) = Pointer(&cell.pointer).split().unwrap_or_default();
+    let tag = field::field(document, parent)
+        .is_some_and(|field| matches!(field.kind, Kind::Tagged { tag, .. } if last == tag));
+    let then = if tag { Then::Become(parent.to_owned()) } else { Then::Set(others) };
     (!options.is_empty()).then(|| Choice { title: cell.field.name.clone(), options, at, then })
 }
 

@@ -15,7 +15,7 @@ use crate::ops::new;
 use crate::scene::history::{Applied, Way};
 use crate::scene::merge::Side;
 use crate::scene::{Document, Edit, History, Start};
-use crate::tui::events::Change;
+use crate::tui::events::Published;
 
 /// At most so many missing files are named.
 const MOST_NAMED: usize = 5;
@@ -157,7 +157,7 @@ impl OpenScene {
     }
 
     /// Takes the unsaved edits that are offered, or leaves them, so that only undo has them.
-    pub fn recover(&mut self, take: bool) -> Option<Change> {
+    pub fn recover(&mut self, take: bool) -> Option<Published> {
         let before = self.document().clone();
         if take {
             self.session.recover();
@@ -165,38 +165,38 @@ impl OpenScene {
             self.session.discard_recovery();
         }
         let edit = Edit::between(&before, self.document());
-        (!edit.is_empty()).then(|| Change { document: self.document().clone(), revision: self.revision(), edit })
+        (!edit.is_empty()).then(|| Published { document: self.document().clone(), revision: self.revision(), edit })
     }
 
     /// Applies an edit. If `held`, it joins the edit before it into one step of undo. `None` if it changes nothing.
     ///
     /// # Errors
     /// The problems that the scene would have.
-    pub fn apply(&mut self, edit: Edit, held: bool) -> std::result::Result<Option<Change>, Vec<Problem>> {
+    pub fn apply(&mut self, edit: Edit, held: bool) -> std::result::Result<Option<Published>, Vec<Problem>> {
         self.writable().map_err(|why| vec![Problem::error("", why)])?;
         let applied = self.session.apply(edit, held)?;
         Ok(applied.map(|applied| self.change(applied)))
     }
 
-    fn change(&self, applied: Applied) -> Change {
-        Change { document: self.document().clone(), revision: applied.revision, edit: applied.edit }
+    fn change(&self, applied: Applied) -> Published {
+        Published { document: self.document().clone(), revision: applied.revision, edit: applied.edit }
     }
 
     /// Undoes the last step; `None` if there is none.
-    pub fn undo(&mut self) -> Option<Change> {
+    pub fn undo(&mut self) -> Option<Published> {
         let applied = self.session.undo()?;
         Some(self.change(applied))
     }
 
     /// Redoes the last undone step; `None` if there is none.
-    pub fn redo(&mut self) -> Option<Change> {
+    pub fn redo(&mut self) -> Option<Published> {
         let applied = self.session.redo()?;
         Some(self.change(applied))
     }
 
     /// Goes back to the scene as it was so long ago, counted from now, or from the time of the present state if that is not
     /// the newest. Also returns how many steps that was.
-    pub fn earlier(&mut self, time: Duration) -> (usize, Option<Change>) {
+    pub fn earlier(&mut self, time: Duration) -> (usize, Option<Published>) {
         let history = self.session.history();
         let now = if history.state() == history.newest() { files::now_ms() } else { history.time_ms() };
         let all = self.session.travel(|history| history.earlier(now.saturating_sub(millis(time))));
@@ -204,22 +204,22 @@ impl OpenScene {
     }
 
     /// Goes forward by so long from the time of the present state. Also returns how many steps that was.
-    pub fn later(&mut self, time: Duration) -> (usize, Option<Change>) {
+    pub fn later(&mut self, time: Duration) -> (usize, Option<Published>) {
         let time = self.session.history().time_ms().saturating_add(millis(time));
         let all = self.session.travel(|history| history.later(time));
         self.travelled(all)
     }
 
     /// Goes to a state of the history, in any branch.
-    pub fn go_to(&mut self, state: usize) -> Option<Change> {
+    pub fn go_to(&mut self, state: usize) -> Option<Published> {
         let all = self.session.travel(|history| history.go_to(state));
         self.travelled(all).1
     }
 
-    fn travelled(&self, all: Vec<(Way, Applied)>) -> (usize, Option<Change>) {
+    fn travelled(&self, all: Vec<(Way, Applied)>) -> (usize, Option<Published>) {
         let count = all.len();
         let edit = Edit::all(all.into_iter().map(|(_, applied)| applied.edit));
-        (count, (count > 0).then(|| Change { document: self.document().clone(), revision: self.revision(), edit }))
+        (count, (count > 0).then(|| Published { document: self.document().clone(), revision: self.revision(), edit }))
     }
 
     /// What was done and can be undone.
@@ -287,7 +287,7 @@ impl OpenScene {
     ///
     /// # Errors
     /// The file cannot be read, or has errors in it.
-    pub fn revert(&mut self) -> Result<Option<Change>> {
+    pub fn revert(&mut self) -> Result<Option<Published>> {
         let applied = self.session.revert()?;
         Ok(applied.map(|applied| self.change(applied)))
     }
@@ -296,7 +296,7 @@ impl OpenScene {
     ///
     /// # Errors
     /// The file cannot be read, or has errors in it.
-    pub fn take_in(&mut self, prefer: Option<Side>) -> Result<(Taken, Option<Change>)> {
+    pub fn take_in(&mut self, prefer: Option<Side>) -> Result<(Taken, Option<Published>)> {
         let (taken, applied) = self.session.take_in(prefer)?;
         Ok((taken, applied.map(|applied| self.change(applied))))
     }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use crate::base::pointer::Pointer;
 use crate::tui::document::cell::Cell;
 use crate::tui::document::sheet::{Row, Sheet};
 
@@ -122,7 +123,6 @@ impl Cursor {
 
     /// Expands the ancestors of the node at `pointer` in the tree.
     pub fn expand_to(&mut self, pointer: &str) {
-        let holds = |node: &str| pointer.strip_prefix(node).is_some_and(|rest| rest.starts_with('/'));
-        self.collapsed.retain(|node| !holds(node));
+        self.collapsed.retain(|node| !Pointer(pointer).is_inside(node));
     }
 }

@@ -30,7 +30,7 @@ pub fn cells(state: &State, sheet: &Sheet) -> Vec<(usize, Cell)> {
     let like =
         |cell: &&Cell| cell.head == model.head && cell.part == model.part && cell.is_number() == model.is_number();
     let list = Pointer(&row.pointer).parent().filter(|_| row.item);
-    let inner = model.pointer.strip_prefix(&row.pointer).unwrap_or_default();
+    let inner = Pointer(&model.pointer).below(&row.pointer).unwrap_or_default();
     let of_row = |i: usize| {
         let pointer = sheet.pointer(i)?;
         // Items of the same kind have the same cells, so the row need not be made.

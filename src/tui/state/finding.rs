@@ -8,7 +8,7 @@ use crate::base::pointer::Pointer;
 use crate::scene::Document;
 use crate::tui::document::places;
 use crate::tui::document::places::Listed;
-use crate::tui::events::Change;
+use crate::tui::events::Published;
 
 /// The most places in the jump list.
 const MOST_JUMPS: usize = 100;
@@ -94,7 +94,7 @@ impl Finding {
     }
 
     /// After an edit: places follow their items; those of deleted items stay at the list.
-    pub fn follow(&mut self, change: &Change) {
+    pub fn follow(&mut self, change: &Published) {
         self.older.iter_mut().chain(&mut self.newer).chain(self.marks.values_mut()).for_each(|spot| {
             spot.node = followed(&spot.node, change);
             spot.row = followed(&spot.row, change);
@@ -113,6 +113,6 @@ impl Finding {
     }
 }
 
-fn followed(pointer: &str, change: &Change) -> String {
+fn followed(pointer: &str, change: &Published) -> String {
     Pointer(pointer).upward().find_map(|at| change.edit.follow(&change.document, at)).unwrap_or_default()
 }

@@ -4,16 +4,15 @@ use super::State;
 use crate::base::pointer::Pointer;
 use crate::layers::parts::materials::{List, Of, Use};
 use crate::scene::{Document, Edit, address};
-use crate::tui::events::{Change, Effect};
+use crate::tui::events::{Effect, Published};
 use crate::tui::text::plain;
 
 /// The shapes that a layer or a zone is made of.
 fn shapes_in(document: &Document, pointer: &str) -> Vec<String> {
     let Some((index, way)) = Pointer(pointer).item_of("/layers") else { return Vec::new() };
     let uses = document.scene().layers.get(index).map(|layer| layer.technique().uses()).unwrap_or_default();
-    let within = |at: &str| at.strip_prefix(way).is_some_and(|rest| rest.starts_with('/'));
     let named = |one: Use| match one.of {
-        Of::Name(List::Shapes, name) if within(&one.at) => Some(name.to_owned()),
+        Of::Name(List::Shapes, name) if Pointer(&one.at).is_inside(way) => Some(name.to_owned()),
         _ => None,
     };
     uses.into_iter().filter_map(named).collect()
@@ -44,7 +43,7 @@ impl State {
     }
 
     /// After an edit, what is apart goes along.
-    pub(super) fn follow_apart(&mut self, change: &Change) {
+    pub(super) fn follow_apart(&mut self, change: &Published) {
         if !self.apart.is_empty() {
             self.apart.follow(change);
             self.ask(Effect::Mute);

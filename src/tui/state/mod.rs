@@ -36,7 +36,7 @@ pub use self::typing::{Mode, Pages};
 use super::document::open_scene::OpenScene;
 use super::document::sheet::{Row, Sheet};
 use super::document::tree;
-use super::events::{Change, Effect};
+use super::events::{Effect, Published};
 use super::keys::Keymap;
 use super::text::color::Depth;
 use crate::base::pointer::Pointer;
@@ -199,7 +199,7 @@ impl State {
     }
 
     /// Adapts to a change of the document, and passes it on.
-    pub fn changed(&mut self, change: Change) {
+    pub fn changed(&mut self, change: Published) {
         self.memory.finding.follow(&change);
         self.follow_apart(&change);
         self.settle();

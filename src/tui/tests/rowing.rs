@@ -1,10 +1,11 @@
 //! Rows are thinned and spaced evenly, nodes get handles, and the picture's cursor goes to what is near.
 
 use kurbo::Point;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::support::{at, press, said_last, state};
 use super::{check, motion, zone};
+use crate::scene::Edit;
 
 const PATH: &str = ": \"set layers.0.zones.0.outline.kind=path\" Enter : \"go layers.0.zones.0.outline.nodes\" Enter";
 const POINTS: &str = ": \"go layers.0.zones.0.outline.points\" Enter";
@@ -72,6 +73,18 @@ pub fn the_cursor_goes_to_what_is_near() {
         assert!(found.distance(Point::new(to.0, to.1)) < 1e-6, "{keys}: {found:?} {:?}", said_last(&state));
     }
     check(&[(&motion("g i S w a"), &zone("/motion/1/at"), json!([31, 26]))]);
+    // The selected point alone is not snapped to, however others are numbered.
+    let mut of_eleven = state();
+    let points: Vec<Value> = (0..11).map(|k| json!([3 * k + 1, k * k / 2])).collect();
+    let outline = json!({ "kind": "polygon", "points": points });
+    let edit = Edit::set(of_eleven.document(), &zone("/outline"), outline);
+    of_eleven.edit(edit, false).unwrap();
+    press(&mut of_eleven, ": \"go layers.0.zones.0.outline.points.1\" Enter");
+    for (from, to) in [((31.4, 49.6), (31.0, 50.0)), ((4.2, 0.6), (7.0, 2.0))] {
+        of_eleven.picture.cursor = Point::new(from.0, from.1);
+        press(&mut of_eleven, ": \"snap point\" Enter");
+        assert_eq!(of_eleven.picture.cursor, Point::new(to.0, to.1), "{from:?}");
+    }
     let mut state = state();
     press(&mut state, ": \"go timeline\" Enter : \"snap angle\" Enter");
     assert!(said_last(&state).1.contains("select one (w, b)"), "{:?}", said_last(&state));

@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 
 use super::atlas::{Area, Atlas, Need, Piece, reach};
 use super::fold::Fold;
-use super::model::{PictureLayer, Sampler, Zone};
+use super::model::{PictureLayer, Zone};
 use super::synth::{Synth, ZoneSynth};
 use crate::base::error::{Error, Result};
 use crate::base::pixels::{Beyond, Grid};
@@ -177,11 +177,9 @@ impl<'a> Plan<'a> {
 
 /// The name of the image that the samplers of a zone read.
 fn source_name<'a>(layer: &'a PictureLayer, zone: &'a Zone) -> &'a str {
-    match (&zone.fold, &zone.sampler) {
-        (Some(Fold::Mask { image }), _) => image,
-        (_, Some(Sampler { image: Some(image), .. })) => image,
-        _ => &layer.image,
-    }
+    let mask = zone.fold.as_ref().and_then(Fold::mask);
+    let own = || zone.sampler.as_ref().and_then(|sampler| sampler.image.as_deref());
+    mask.or_else(own).unwrap_or(&layer.image)
 }
 
 fn zone(to: &mut dyn Sink, plan: &Plan, table: &Table, zone: &Planned, row: usize) -> Result<manifest::Zone> {

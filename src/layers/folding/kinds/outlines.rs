@@ -152,8 +152,7 @@ fn flattened(outline: &Outline) -> Vec<Point> {
 /// A message that only `kept` is left, unless the outline enclosed exactly the area `new`.
 fn area_lost(old: &Outline, new: f64, kept: &str) -> Option<String> {
     let polygon = old.polygon();
-    let drawn = !matches!(old, Outline::Rectangle { .. } | Outline::Ellipse { .. });
-    if drawn && self_crossing(&polygon, FLATNESS_PX).is_some() {
+    if old.is_drawn() && self_crossing(&polygon, FLATNESS_PX).is_some() {
         return Some(format!("only {kept}"));
     }
     let area = match old {

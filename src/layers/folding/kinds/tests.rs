@@ -90,6 +90,11 @@ fn outlines_keep_their_shape() {
         assert!(curve.vertices().iter().all(|&p| sides.distance(p) < 0.051), "{found}");
         assert!(told.ends_with("straight sides, within 0.05 px of it"), "{told}");
     }
+    for kind in variants::<Outline>("kind") {
+        // A polygon stays as it is, and shapes are made by hand.
+        let is_turned = !["polygon", "shapes"].contains(&kind.as_str());
+        assert_eq!(outlines::turned(&read(&polygon).unwrap(), &kind).is_some(), is_turned, "{kind}");
+    }
     let bow = json!({ "kind": "polygon", "points": [[0, 0], [9, 9], [9, 0], [0, 9]] });
     assert_eq!(one(outlines::turned(&read(&bow).unwrap(), "rectangle")).1, "only its box is kept");
     assert_eq!(outlines::turned(&read(&bow).unwrap(), "polygon"), None);

@@ -268,8 +268,8 @@ fn add_row(
     }
 }
 
-/// How much of a kernel pixels of a row show, by their 1 / depth: what is within its reach of a plane that has the second
-/// of `level` at the first pixel and grows by the first.
+/// How much each pixel of a row shows of a kernel, by its 1 / depth: less the farther that is from the plane of the kernel, and
+/// nothing beyond `reach`. `level` is the slope of 1 / depth of the plane along the row, and its value at the first pixel.
 #[inline(always)]
 fn near(covers: &mut [f32], inverse: &[f64], level: (f64, f64), (scale, reach): (f64, f64)) {
     let (from, often) = (reach as f32, (1.0 / reach) as f32);

@@ -135,6 +135,6 @@ fn camera(own: &ViewCamera, size: (usize, usize), mesh: &Mesh) -> (Camera, DVec3
     let turn = nearest_turn(DMat3::from_cols(row(0), row(1), row(2)).transpose());
     let shift = DVec3::new(matrix[0][3], matrix[1][3], matrix[2][3]);
     let camera = Camera::of_turn(turn, shift, DVec2::from(focal), middle, whole).resized(size);
-    let centre = mesh.bounds().map_or(DVec3::ZERO, |(low, high)| (low + high) / 2.0);
-    (camera, nearest_on_axis(&camera, centre))
+    let center = mesh.bounds().map_or(DVec3::ZERO, |(low, high)| (low + high) / 2.0);
+    (camera, nearest_on_axis(&camera, center))
 }
