@@ -105,7 +105,7 @@ impl Folding {
         let (mut ahead, mut behind) = (Ragged::default(), Ragged::default());
         self.regions.polygons().iter().for_each(|polygon| spans(polygon, &paths.area, self.place, in_region));
         let meets = |part: &Area| !self.regions.sides_within(self.reach(paths, part)).is_empty();
-        let tiles: Vec<Area> = if meets(&paths.area) { tiles(&paths.area).filter(meets).collect() } else { Vec::new() };
+        let tiles: Vec<Area> = tiles(&paths.area).filter(meets).collect();
         let (mut walk, mut member) = (Walk::default(), Vec::new());
         for y in (paths.area.from[1]..paths.area.to[1]).filter(|_| !tiles.is_empty()) {
             let row = |part: &Area| Area { from: [part.from[0], y], to: [part.to[0], y + 1] };
