@@ -47,6 +47,7 @@ const OF_ONE_TECHNIQUE: &[&str] = &[
     "benches/work.rs",
     "tests/display/mod.rs",
     "tests/gpu/main.rs",
+    "tests/player.rs",
     "tests/profiles.rs",
     "tests/properties.rs",
     "tests/show/mod.rs",

@@ -270,22 +270,7 @@ fn synthesise(
                 let synth_ms = began.elapsed().as_secs_f64() * 1000.0;
                 problems.extend(synth.lacks());
                 let problems = named(&scene, problems);
-                let around = Ball::around(&|ways| render::reach(&synth.layers, TIMES, ways));
-                let otherwise = otherwise(&how, &scene);
-                let selects = how.sight.as_ref().is_some_and(Sight::selects);
-                let (scene, synth, marks) = how.seen(scene, synth);
-                send(Event::Ready(Ready {
-                    document,
-                    scene,
-                    synth,
-                    around,
-                    revision,
-                    synth_ms,
-                    problems,
-                    otherwise,
-                    marks,
-                    selects,
-                }))?;
+                send(Event::Ready(ready(Job { document, revision, how }, scene, synth, (synth_ms, problems))))?;
             }
             // A missing picture was already found, with its reason, while it was loaded.
             Err(problem) => {
@@ -295,6 +280,16 @@ fn synthesise(
         }
     }
     Ok(())
+}
+
+/// A scene that is ready, as it is seen.
+fn ready(job: Job, scene: Arc<Scene>, synth: Synth, (synth_ms, problems): (f64, Vec<Problem>)) -> Ready {
+    let Job { document, revision, how } = job;
+    let around = Ball::around(&|ways| render::reach(&synth.layers, TIMES, ways));
+    let otherwise = otherwise(&how, &scene);
+    let selects = how.sight.as_ref().is_some_and(Sight::selects);
+    let (scene, synth, marks) = how.seen(scene, synth);
+    Ready { document, scene, synth, around, revision, synth_ms, problems, otherwise, marks, selects }
 }
 
 /// In words, that not all of a scene is shown, or something in its place.
