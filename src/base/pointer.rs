@@ -13,6 +13,11 @@ impl<'a> Pointer<'a> {
         self.0.split('/').skip(1).map(unescaped)
     }
 
+    /// How many tokens it has.
+    pub fn depth(self) -> usize {
+        self.0.matches('/').count()
+    }
+
     /// The pointer one step deeper.
     pub fn join(self, token: impl Display) -> String {
         let mut joined = self.0.to_owned();
@@ -103,7 +108,7 @@ pub fn index(token: &str) -> Option<usize> {
 }
 
 fn unescaped(token: &str) -> String {
-    token.replace("~1", "/").replace("~0", "~")
+    if token.contains('~') { token.replace("~1", "/").replace("~0", "~") } else { token.to_owned() }
 }
 
 #[cfg(test)]

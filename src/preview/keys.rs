@@ -43,6 +43,7 @@ const OWN: &[KeyRow] = &[
     row(VIEW, "w", "view-seam", "The loop's seam, the last frame against the first"),
     row(VIEW, "t", "view-checkerboard", "A checkerboard under transparency"),
     row(VIEW, "E", "view-legends", "Legends of the vector field"),
+    row(VIEW, "m", "next-background", "The background of the window: dark, black, gray or light"),
     row(VIEW, "+", "zoom-in", "Larger"),
     row(VIEW, "-", "zoom-out", "Smaller"),
     row(VIEW, "f", "zoom-fit", "Fits the window"),

@@ -80,6 +80,13 @@ impl Switches {
         self.set(name, wanted).map(|on| set(name, on))
     }
 
+    /// The commands that set what is not as in a new window.
+    pub fn changed(&self) -> impl Iterator<Item = String> {
+        let at_first = |name: &&'static str| ON_AT_FIRST.contains(name);
+        let off = ON_AT_FIRST.into_iter().filter(|name| !self.on.contains(name)).map(|name| set(name, false));
+        off.chain(self.on.iter().filter(move |name| !at_first(name)).map(|name| set(name, true)))
+    }
+
     /// Turns a switch on or off, or over if `wanted` is `None`; returns what it is then. `None` if there is no such switch.
     pub fn set(&mut self, name: &str, wanted: Option<bool>) -> Option<bool> {
         let name = switch(name)?;
@@ -186,7 +193,7 @@ impl Views {
 }
 
 /// The name in a command, and what is wanted of a switch: on, off, or the other of the two.
-pub(super) fn wanted(command: &str) -> (&str, Option<bool>) {
+pub fn wanted(command: &str) -> (&str, Option<bool>) {
     match command.split_once(' ') {
         Some((name, "on")) => (name, Some(true)),
         Some((name, "off")) => (name, Some(false)),

@@ -125,9 +125,9 @@ pub fn pick(scene: &Scene, at: Point, reach_px: f64) -> Option<Hit> {
 /// something smaller.
 fn is_selected(mark: &str, selection: &str) -> bool {
     // `/layers/0/zones/2` and deeper.
-    let is_item = Pointer(selection).tokens().count() >= 4;
+    let is_item = Pointer(selection).depth() >= 4;
     // What belongs to nothing in the document, as the ground, or to all of a layer, as its edges, is never selected.
-    let is_part = !matches!(Pointer(mark).tokens().count(), 0 | 2);
+    let is_part = !matches!(Pointer(mark).depth(), 0 | 2);
     is_part && (Pointer(selection).is_within(mark) || (is_item && Pointer(mark).is_within(selection)))
 }
 

@@ -27,6 +27,13 @@ pub struct Grip {
     pub from: Option<Point>,
 }
 
+impl Grip {
+    /// Whether it is the end of a vector without length, which lies where that begins.
+    pub fn is_drawn_in(&self) -> bool {
+        self.from == Some(self.at)
+    }
+}
+
 /// What a grip changes.
 enum Of {
     Place,
@@ -113,10 +120,7 @@ fn standing(inside: &[(String, Place)], holder: &str) -> Vec<(Grip, Of)> {
         match is_place(place) {
             true => Some((grip(token, value.to_point(), None), Of::Place)),
             false if is_size(place) => here.map(|center| (grip(token, center + value, None), Of::Radii(center))),
-            // What has no length cannot be told from where it begins.
-            false => here
-                .filter(|_| value != Vec2::ZERO)
-                .map(|from| (grip(token, from + value, Some(from)), Of::Vector(from))),
+            false => here.map(|from| (grip(token, from + value, Some(from)), Of::Vector(from))),
         }
     };
     let number = |name: &str| in_picture().find(|(token, _)| token == name)?.1.value?.as_f64();
@@ -253,7 +257,8 @@ mod tests {
             document(r#"{"kind": "ellipse", "center": [20, 20], "radii": [9, 7]}"#, &format!("[{point}, {point}]"));
         let pointers = |selection| all(&two, selection).into_iter().map(|(pointer, ..)| pointer).collect::<Vec<_>>();
         let of_zone =
-            ["/outline/center", "/outline/radii", "/motion/0/at", "/motion/1/at"].map(|way| format!("{ZONE}{way}"));
+            ["/outline/center", "/outline/radii", "/motion/0/at", "/motion/0/jump", "/motion/1/at", "/motion/1/jump"]
+                .map(|way| format!("{ZONE}{way}"));
         for selection in [ZONE, "/layers/0/zones/0/motion/1/jump", "/layers/0/zones/0/name"] {
             let mut found = pointers(selection);
             found.sort();
@@ -262,10 +267,15 @@ mod tests {
             assert_eq!(found, expected, "{selection}");
         }
         assert_eq!(pointers("/shapes/lid"), pointers("/shapes/lid/nodes/1/at"));
-        assert_eq!(
-            pointers("/shapes/lid"),
-            ["/shapes/lid/nodes/0/at", "/shapes/lid/nodes/0/out", "/shapes/lid/nodes/1/at"]
-        );
+        let handles = [(0, "in", true), (0, "out", false), (1, "in", true), (1, "out", true)];
+        let of_lid = grips(&two, "/shapes/lid");
+        for (node, handle, is_drawn_in) in handles {
+            let pointer = format!("/shapes/lid/nodes/{node}/{handle}");
+            let grip = of_lid.iter().find(|grip| grip.pointer == pointer).unwrap();
+            assert_eq!(grip.is_drawn_in(), is_drawn_in, "{pointer}");
+        }
+        let drawn = dragged(&two, "/shapes/lid/nodes/1/out", Point::new(33.0, 6.0));
+        assert_eq!(drawn, Some(vec![("/shapes/lid/nodes/1/out".into(), serde_json::json!([3, -4]))]));
         for selection in ["", "/layers/0", "/layers/0/zones", "/layers/7/zones/0", "/timeline", "/shapes"] {
             assert!(pointers(selection).is_empty(), "{selection}");
         }
@@ -280,6 +290,6 @@ mod tests {
             &format!("[{}]", points.join(",")),
         );
         assert_eq!(grips(&many, ZONE).len(), 2);
-        assert_eq!(grips(&many, "/layers/0/zones/0/motion/7").len(), 3);
+        assert_eq!(grips(&many, "/layers/0/zones/0/motion/7").len(), 4);
     }
 }

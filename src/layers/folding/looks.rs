@@ -21,7 +21,7 @@ pub static OVERLAYS: &[Overlay] = &[
     Overlay::new(REGIONS, "r", "Fold regions", When::Document).plotted(InPlots::Beneath),
     Overlay::new(ANCHORS, "a", "Anchors and their jump vectors", When::Document).plotted(InPlots::Above),
     Overlay::new(CURVES, "c", "Curves, lassos and handles", When::Document),
-    Overlay::new(LABELS, "n", "Names and numbers", When::Document),
+    Overlay::new(LABELS, "n", "Names and numbers", When::Document).words(),
     Overlay::new(FIELD, "v", "The vector field as arrows", When::Synthesis).explained(Legend::Arrows),
     Overlay::new(WHEEL, "d", "The vector field as colors of directions", When::Synthesis).explained(Legend::Colors),
     Overlay::new(PATHS, "p", "Jump paths", When::Synthesis),

@@ -24,6 +24,8 @@ pub struct Overlay {
     pub hidden: bool,
     /// Whether it shows what one selects pictures on a mesh by, and so always where one does.
     pub selects: bool,
+    /// Whether it is words alone, which the terminal's picture has no room for.
+    pub is_words: bool,
     /// Where plots of vector fields draw it; `None` if they leave it out.
     pub in_plots: Option<InPlots>,
     /// The legend that explains it in the window, if it needs one.
@@ -33,7 +35,13 @@ pub struct Overlay {
 impl Overlay {
     /// An overlay that no surface hides, that is in no plot and needs no legend.
     pub const fn new(name: &'static str, key: &'static str, help: &'static str, when: When) -> Overlay {
-        Overlay { name, key, help, when, hidden: false, selects: false, in_plots: None, legend: None }
+        let (hidden, selects, is_words) = (false, false, false);
+        Overlay { name, key, help, when, hidden, selects, is_words, in_plots: None, legend: None }
+    }
+
+    /// The same, of words alone.
+    pub const fn words(self) -> Overlay {
+        Overlay { is_words: true, ..self }
     }
 
     /// The same, drawn in plots too.

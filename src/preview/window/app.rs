@@ -10,6 +10,7 @@ use winit::keyboard::ModifiersState;
 
 use super::clock::Clock;
 use super::hurry::Hurry;
+use super::kept::Kept;
 use super::mouse::Mouse;
 use super::opened::{OpenWindow, first_size};
 use super::options::WindowOptions;
@@ -43,6 +44,8 @@ pub struct App {
     pub(super) hurry: Hurry,
     /// The size that the window is to grow to once its first picture is drawn.
     pub(super) grows_to: Option<PhysicalSize<u32>>,
+    /// What comes back of an earlier window of the scene.
+    pub(super) kept: Kept,
     /// The scene that is on its way to the GPU, and the next one.
     pub(super) sending: Option<Sending>,
     pub(super) waiting: Option<Ready>,
@@ -65,13 +68,16 @@ impl App {
         replies: Sender<ToEditor>,
         proxy: EventLoopProxy<Event>,
     ) -> App {
+        let kept = Kept::of(&options.screenshots);
+        let state = State { background: kept.background, ..State::default() };
         App {
             options,
+            kept,
             replies,
             proxy,
             instance: Some(instance),
             letters: Letters::default(),
-            state: State::default(),
+            state,
             shown: None,
             opened: None,
             marks: Cached::default(),
@@ -100,9 +106,11 @@ impl App {
     /// Opens the window if it is not open yet.
     pub(super) fn open(&mut self, event_loop: &ActiveEventLoop) -> Result<()> {
         let Some(instance) = self.instance.take() else { return Ok(()) };
-        self.opened = Some(OpenWindow::open(event_loop, instance, &self.options, self.first_size(event_loop))?);
+        let size = self.first_size(event_loop);
+        self.opened = Some(OpenWindow::open(event_loop, instance, &self.options, (size, self.kept.place))?);
         self.report();
         self.resized();
+        self.come_back();
         Ok(())
     }
 
@@ -110,7 +118,27 @@ impl App {
     pub(super) fn first_size(&self, event_loop: &ActiveEventLoop) -> PhysicalSize<u32> {
         let monitor = event_loop.primary_monitor().or_else(|| event_loop.available_monitors().next());
         let (scale, room) = monitor.map_or((1.0, None), |m| (m.scale_factor(), Some(m.size())));
-        first_size(self.state.picture, scale, room)
+        first_size(self.state.picture, self.kept.size, (scale, room))
+    }
+
+    /// Shows what an earlier window showed of the picture, once that is there, unless it was asked for something else.
+    pub(super) fn come_back(&mut self) {
+        let State { viewport, picture, .. } = &mut self.state;
+        if *picture == Size::ZERO || self.opened.is_none() {
+            return;
+        }
+        if let Some((zoom, x, y)) = self.kept.view.take().filter(|_| viewport.is_fitted()) {
+            let (picture, area) = (self.state.picture, self.state.area());
+            self.state.viewport.show(zoom, (x, y).into(), picture, area);
+        }
+    }
+
+    /// Keeps how the window is for the next one.
+    pub(super) fn keep(&mut self) {
+        if let Some(opened) = &self.opened {
+            self.kept.take(opened, &self.state);
+            self.kept.keep(&self.options.screenshots);
+        }
     }
 
     pub(super) fn resized(&mut self) {

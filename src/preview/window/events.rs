@@ -221,6 +221,10 @@ impl ApplicationHandler<Event> for App {
         }
     }
 
+    fn exiting(&mut self, _: &ActiveEventLoop) {
+        self.keep();
+    }
+
     fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {
         let rest = self.state.transport.until_next(&self.state.timeline);
         let interval = self.opened.as_ref().map(OpenWindow::interval);

@@ -83,6 +83,7 @@ impl App {
         self.state.work = None;
         self.hurry.changed(Instant::now());
         self.load(&ready);
+        self.come_back();
         // A window that opened without a picture stays as it is until there is one.
         self.grows_to = self.shown.is_none().then(|| self.first_size(event_loop));
         self.shown = Some(show);

@@ -22,6 +22,11 @@ pub struct Held {
 }
 
 impl Held {
+    /// Alt, or Ctrl and Shift: a vector without length is drawn out.
+    pub fn draws_out(self) -> bool {
+        self.alt || self.ctrl && self.shift
+    }
+
     /// Alt or Ctrl: window managers often take Alt for themselves.
     pub fn goes_round(self) -> bool {
         self.alt || self.ctrl
@@ -83,11 +88,17 @@ impl Grasp {
     }
 }
 
-/// The nearest grip within reach of a place on the screen; of several one that is selected.
-pub fn grip_at(state: &State, at: Point) -> Option<&Grip> {
+/// The nearest grip within reach of a place on the screen; of several one that is selected. Vectors without length, as missing
+/// handles, are only drawn out if that is asked for, the last one first.
+pub fn grip_at(state: &State, at: Point, draws_out: bool) -> Option<&Grip> {
     let far = |grip: &Grip| state.viewport.screen_from_image(grip.at, state.area()).distance(at);
     let grips = state.grips.iter().map(|grip| (grip, far(grip)));
     let near = grips.filter(|(_, far)| *far <= REACH_PX * state.scale && at.y < state.area().height);
+    let near: Vec<(&Grip, f64)> = near.collect();
+    if let Some((grip, _)) = near.iter().rfind(|(grip, _)| draws_out && grip.is_drawn_in()) {
+        return Some(grip);
+    }
+    let near = near.into_iter().filter(|(grip, _)| !grip.is_drawn_in());
     near.min_by(|(a, near), (b, far)| state.selects(b).cmp(&state.selects(a)).then(near.total_cmp(far)))
         .map(|(grip, _)| grip)
 }

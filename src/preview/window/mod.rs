@@ -27,6 +27,7 @@ mod glyphs;
 mod grasp;
 mod hurry;
 mod input;
+mod kept;
 mod labels;
 mod legend;
 mod libraries;

@@ -151,7 +151,7 @@ impl Mouse {
         state.words.told = None;
         let Some(at) = state.pointer else { return Asked::Nothing };
         if at.y < state.area().height {
-            let grip = grip_at(state, at).filter(|_| button == Button::Left);
+            let grip = grip_at(state, at, self.held.draws_out()).filter(|_| button == Button::Left);
             self.drag = match button {
                 Button::Right => Drag::Band,
                 Button::Left if on_border(state, at) => Drag::Border,
@@ -236,7 +236,7 @@ impl Mouse {
             (Drag::Picture | Drag::Round | Drag::Along | Drag::Grip, _) => Shape::Held,
             (Drag::Nothing, Some(at)) if at.y >= state.area().height && bar::is_sign(state, at) => Shape::Hand,
             (Drag::Nothing, Some(at)) if on_border(state, at) => Shape::Across,
-            (Drag::Nothing, Some(at)) if grip_at(state, at).is_some() => Shape::Hand,
+            (Drag::Nothing, Some(at)) if grip_at(state, at, false).is_some() => Shape::Hand,
             (Drag::Nothing | Drag::Time, _) => Shape::Arrow,
         }
     }
@@ -297,6 +297,22 @@ mod tests {
         let zoom = state.viewport.zoom;
         mouse.turned(&mut state, 1.0);
         assert!(state.own_camera().unwrap().position[2] < scene.position[2] && state.viewport.zoom == zoom);
+    }
+
+    #[test]
+    fn a_vector_without_length_is_drawn_out_of_its_place_with_alt() {
+        let now = Instant::now();
+        let (mut mouse, mut state) = (Mouse::default(), State::for_tests());
+        let at = Point::new(100.0, 60.0);
+        let grip = |pointer: &str, from| Grip { pointer: pointer.to_owned(), at, from };
+        state.grips = vec![grip("/at", None), grip("/in", Some(at)), grip("/out", Some(at))];
+        let on_screen = state.viewport.screen_from_image(at, state.area());
+        let far = [(on_screen.x, on_screen.y), (on_screen.x + 40.0, on_screen.y)];
+        for (alt, pointer) in [(false, "/at"), (true, "/out")] {
+            mouse.hold(Held { alt, ..Held::default() });
+            let dragged = drag(&mut mouse, &mut state, Button::Left, &far, now);
+            assert_eq!(dragged, Asked::Drop(pointer.to_owned(), Point::new(120.0, 60.0)), "{alt}");
+        }
     }
 
     #[test]

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use kurbo::Size;
-use winit::dpi::{LogicalSize, PhysicalSize};
+use winit::dpi::{LogicalSize, PhysicalPosition, PhysicalSize};
 use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
 use winit::window::{CursorIcon, Fullscreen, Window};
 
@@ -69,14 +69,15 @@ impl OpenWindow {
         event_loop: &ActiveEventLoop,
         instance: wgpu::Instance,
         options: &WindowOptions,
-        size: PhysicalSize<u32>,
+        (size, place): (PhysicalSize<u32>, Option<(i32, i32)>),
     ) -> Result<OpenWindow> {
-        let attributes = Window::default_attributes()
+        let mut attributes = Window::default_attributes()
             .with_title(format!("{} - plica", options.name))
             .with_inner_size(size)
             .with_min_inner_size(LogicalSize::<f64>::from(LEAST))
             .with_active(options.takes_keyboard)
             .with_visible(options.takes_keyboard);
+        attributes.position = place.map(|(x, y)| PhysicalPosition::new(x, y).into());
         let window = Arc::new(event_loop.create_window(attributes).map_err(|e| Error::at(PLACE, e))?);
         let desk = Desk::of(&window);
         if !options.takes_keyboard {
@@ -289,8 +290,17 @@ impl OpenWindow {
     }
 }
 
-/// The size of a window around a picture, in physical pixels: as large as the picture is in logical ones.
-pub fn first_size(picture: Size, scale: f64, room: Option<PhysicalSize<u32>>) -> PhysicalSize<u32> {
+/// The size of a window around a picture, in physical pixels: that of an earlier one, otherwise as large as the picture is in
+/// logical ones. `room` is the monitor's.
+pub fn first_size(
+    picture: Size,
+    earlier: Option<(u32, u32)>,
+    (scale, room): (f64, Option<PhysicalSize<u32>>),
+) -> PhysicalSize<u32> {
+    if let Some((width, height)) = earlier {
+        let most = room.unwrap_or(PhysicalSize::new(u32::MAX, u32::MAX));
+        return PhysicalSize::new(width.min(most.width), height.min(most.height));
+    }
     let first = if picture == Size::ZERO { Size::from(FIRST) } else { picture } * scale;
     let side = |wanted: f64, least: f64, room: Option<u32>| {
         let most = room.map_or(f64::INFINITY, |r| f64::from(r) * MOST_OF_MONITOR);
@@ -318,7 +328,10 @@ mod tests {
             (Size::new(560.0, 400.0), 1.5, (840, 651)),
             (Size::new(200.0, 100.0), 1.5, (720, 480)),
         ] {
-            assert_eq!(first_size(picture, scale, room), size.into(), "{picture:?}");
+            assert_eq!(first_size(picture, None, (scale, room)), size.into(), "{picture:?}");
+        }
+        for (earlier, size) in [((700, 333), (700, 333)), ((4000, 900), (1000, 900))] {
+            assert_eq!(first_size(Size::ZERO, Some(earlier), (1.0, room)), size.into());
         }
     }
 }

@@ -3,6 +3,7 @@
 use kurbo::Vec2;
 
 use super::state::{Panel, State};
+use super::style::BACKGROUNDS;
 use super::viewport::Fit;
 use crate::preview::keys::TRY_NOW;
 use crate::preview::views::{self, FIELD};
@@ -65,6 +66,7 @@ impl State {
             "previous-pass" => self.step_pass(-1),
             "field-closer" => self.field_step = FIELD.step(self.field_step, -1),
             "field-wider" => self.field_step = FIELD.step(self.field_step, 1),
+            "next-background" => self.background = (self.background + 1) % BACKGROUNDS.len(),
             "wipe-left" => self.move_wipe(-WIPE_STEP),
             "wipe-right" => self.move_wipe(WIPE_STEP),
             "play-part" => self.words.told = Some(self.transport.mark_part()),
@@ -83,8 +85,7 @@ impl State {
             "help" => self.panel = if self.panel == Panel::Help { Panel::None } else { Panel::Help },
             "close-panel" => return self.close(),
             "view-full-screen" => return Outcome::FullScreen,
-            // Answered by others: the editor with a selection, whoever follows the scene with a connection.
-            "select-point" | "next-sight" | TRY_NOW => {}
+            "select-point" | "next-sight" | TRY_NOW => {} // answered by the editor, and by whoever follows the scene
             "quit" => return Outcome::Quit,
             _ => return Outcome::Unknown,
         }

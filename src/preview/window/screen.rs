@@ -9,7 +9,7 @@ use winit::window::Window;
 use super::glyphs::Glyphs;
 use super::state::State;
 use super::stroke::{Color, Stroke};
-use super::style::GROUND;
+use super::style::BACKGROUNDS;
 use super::text::Letters;
 use crate::base::error::{Error, Result};
 use crate::base::pixels::{Frame, linear_from_srgb};
@@ -399,7 +399,8 @@ fn uniform(state: &State, Pictures { frame, scale, .. }: &Pictures) -> ScreenUni
     };
     let origin = state.viewport.origin(state.area());
     let zoom = state.viewport.zoom / scale;
-    let checks = if state.shows("view-checkerboard") { [LIGHT, DARK] } else { [GROUND; 2] };
+    let background = BACKGROUNDS[state.background % BACKGROUNDS.len()];
+    let checks = if state.shows("view-checkerboard") { [LIGHT, DARK] } else { [background; 2] };
     ScreenUniform {
         size: [state.window.width as f32, state.window.height as f32],
         origin: [origin.x as f32, origin.y as f32],
@@ -410,7 +411,7 @@ fn uniform(state: &State, Pictures { frame, scale, .. }: &Pictures) -> ScreenUni
         },
         zoom: zoom as f32,
         check: (CHECK_PX * state.scale) as f32,
-        ground: linear(GROUND),
+        ground: linear(background),
         light: linear(checks[0]),
         dark: linear(checks[1]),
     }

@@ -67,6 +67,8 @@ pub struct State {
     pub panel: Panel,
     /// How often the spacing of the field is doubled.
     pub field_step: i32,
+    /// Which of the backgrounds is around the picture.
+    pub background: usize,
     /// The border between still and moving, as a share of the picture, if `view-wipe` is on.
     pub wipe: f64,
     /// The point marked last, in pixels of the picture.
@@ -138,6 +140,7 @@ impl Default for State {
             work: None,
             panel: Panel::None,
             field_step: 0,
+            background: 0,
             wipe: 0.5,
             marked: None,
             cursor: None,

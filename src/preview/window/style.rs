@@ -2,8 +2,8 @@
 
 use super::stroke::Color;
 
-/// The ground around the picture.
-pub const GROUND: Color = [18, 20, 24, 255];
+/// What is around the picture, one after the other by a key: dark, black, gray, light.
+pub const BACKGROUNDS: [Color; 4] = [[18, 20, 24, 255], [0, 0, 0, 255], [119, 119, 119, 255], [235, 235, 235, 255]];
 pub const PANEL: Color = [22, 24, 29, 238];
 pub const RAIL: Color = [58, 64, 74, 255];
 pub const ACCENT: Color = [86, 180, 233, 255];

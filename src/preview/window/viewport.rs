@@ -70,6 +70,17 @@ impl Viewport {
         self.resized(picture, area);
     }
 
+    /// Whether the picture is kept fitted.
+    pub fn is_fitted(&self) -> bool {
+        self.fitted.is_some()
+    }
+
+    /// Shows a place of the picture in the middle.
+    pub fn show(&mut self, zoom: f64, center: Point, picture: Size, area: Size) {
+        (self.zoom, self.center, self.fitted) = (zoom.clamp(ZOOMS.0, ZOOMS.1), center, None);
+        self.keep_in_sight(picture, area);
+    }
+
     /// Actual size (1:1), around the place in the middle; a picture that has room is shown whole.
     pub fn one(&mut self, picture: Size, area: Size) {
         if picture.width <= area.width && picture.height <= area.height {

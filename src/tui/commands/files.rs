@@ -5,6 +5,7 @@ use super::picture::switch;
 use crate::base::problem::quoted;
 use crate::files::paths;
 use crate::preview::keys as window;
+use crate::preview::views;
 use crate::tui::events::Effect;
 use crate::tui::state::State;
 
@@ -85,16 +86,20 @@ fn view(state: &mut State, call: &Call) -> Done {
     match call.text {
         "" if call.count.is_some() => return Err("view takes no count".into()),
         "" => state.ask(Effect::View(None)),
-        name if known(name) => {
+        command if known(views::wanted(command).0) => {
+            let (name, wanted) = views::wanted(command);
             // A switch is told as what it is set to here.
-            call.steps().for_each(|_| {
-                let told = switch(state, name);
+            for _ in call.steps() {
+                let told = switch(state, command);
+                if wanted.is_some() && told.is_none() {
+                    return Err(format!("{} is no switch, to be on or off", quoted(name)));
+                }
                 if let Some(on) = told.as_deref().and_then(|told| told.strip_prefix(name)) {
                     let row = window::KEYS.iter().find(|row| row.command == name);
                     state.say(format!("{}:{on}", row.map_or(name, |row| row.help)));
                 }
                 state.ask(Effect::View(Some(told.unwrap_or_else(|| name.to_owned()))));
-            });
+            }
         }
         name => return Err(format!("the window has no command {}", quoted(name))),
     }

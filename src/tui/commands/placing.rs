@@ -5,6 +5,7 @@ use serde_json::Value;
 
 use super::command::{Call, Command, Done, command};
 use super::items::go_to;
+use super::transforming::numbers;
 use crate::base::pointer::Pointer;
 use crate::base::problem::quoted;
 use crate::render::{overlay, passes};
@@ -36,8 +37,7 @@ const PICK_REACH: f64 = 0.02;
 
 fn cursor(state: &mut State, call: &Call) -> Done {
     let (place, text) = call.text.strip_prefix("at ").map_or((false, call.text), |text| (true, text));
-    let numbers: Vec<f64> = text.split(' ').filter_map(|number| number.parse().ok()).collect();
-    let [x, y] = numbers[..] else {
+    let [x, y] = numbers(state, text.split_whitespace())?[..] else {
         return Err(format!("cursor takes X Y, or at X Y, not {}", quoted(call.text)));
     };
     if place && call.count.is_some() {

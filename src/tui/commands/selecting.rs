@@ -6,6 +6,7 @@ use kurbo::{Point, Rect};
 
 use super::command::{Call, Command, Done, command};
 use super::items::{alike, rows};
+use super::transforming::numbers;
 use crate::base::pointer::Pointer;
 use crate::base::text::counted;
 use crate::tui::events::Effect;
@@ -101,8 +102,9 @@ fn matching(state: &mut State, condition: &str) -> Done {
 
 /// Selects the rows that stand within a box of the picture, given by two of its corners.
 fn within(state: &mut State, text: &str) -> Done {
-    let numbers: Vec<f64> = text.split_whitespace().skip(1).filter_map(|number| number.parse().ok()).collect();
-    let [x0, y0, x1, y1] = numbers[..] else { return Err("select within takes two corners: X Y X Y".into()) };
+    let [x0, y0, x1, y1] = numbers(state, text.split_whitespace().skip(1))?[..] else {
+        return Err("select within takes two corners: X Y X Y".into());
+    };
     let corners = Rect::from_points((x0, y0), (x1, y1));
     let sheet = state.sheet();
     let stands = |row: &usize| sheet.pointer(*row).and_then(|pointer| place::seen(state, &pointer));

@@ -110,7 +110,10 @@ fn apply(state: &mut State, all: &Placed, done: &str, by: impl Fn(usize, Rect) -
 }
 
 /// The numbers of a command's arguments, which may be computed from the width and the height of the picture.
-fn numbers<'a>(state: &State, words: impl IntoIterator<Item = &'a str>) -> Result<Vec<f64>, String> {
+///
+/// # Errors
+/// A word is no number.
+pub(super) fn numbers<'a>(state: &State, words: impl IntoIterator<Item = &'a str>) -> Result<Vec<f64>, String> {
     let (width, height) = state.picture.size.unwrap_or_default();
     let known = [("w", width as f64), ("h", height as f64)];
     let known = if state.picture.size.is_some() { &known[..] } else { &[] };

@@ -69,7 +69,9 @@ pub fn settle(state: &mut State) {
 /// Which overlays of the document are drawn over the picture, and what is selected.
 pub fn overlays(state: &State) -> View {
     let selection = Some(state.focused());
-    let is_shown = |overlay: &&Overlay| overlay.when == When::Document && !state.picture.off.contains(overlay.name);
+    let is_shown = |overlay: &&Overlay| {
+        overlay.when == When::Document && !overlay.is_words && !state.picture.off.contains(overlay.name)
+    };
     let of_document = overlay::overlays().filter(is_shown);
     View { shown: of_document.map(|overlay| overlay.name).collect(), selection, ..View::default() }
 }

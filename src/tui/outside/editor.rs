@@ -134,7 +134,7 @@ impl Editor {
     /// What happens before the first key: keymap, what was kept, lessons, what was `typed` meanwhile, window and script.
     fn enter(&mut self, typed: &[input::Piece]) -> Result<()> {
         if self.screen.is_some() {
-            self.state.memory.recall(files::kept::read());
+            self.state.memory.recall(files::kept::read(files::kept::EDITOR));
         }
         self.begin();
         self.load_keys();
@@ -179,7 +179,7 @@ impl Editor {
         }
         // A question that waits goes on waiting.
         let mode = std::mem::replace(&mut self.state.typing.mode, Mode::Normal);
-        for line in kept::places(files::kept::read(), self.state.scene.path()) {
+        for line in kept::places(files::kept::read(files::kept::EDITOR), self.state.scene.path()) {
             // A place that is gone is left out.
             let _ = commands::obey(&mut self.state, &line, None);
         }
@@ -192,12 +192,12 @@ impl Editor {
         if self.screen.is_none() {
             return;
         }
-        let mut kept = self.state.memory.keep(files::kept::read());
+        let mut kept = self.state.memory.keep(files::kept::read(files::kept::EDITOR));
         // Lessons have a new scene each time.
         if self.state.tutor.is_none() {
             kept = kept::keep_places(&self.state, kept, self.state.scene.path());
         }
-        files::kept::write(&kept);
+        files::kept::write(files::kept::EDITOR, &kept);
     }
 
     /// Watches the scene and all files that it names.

@@ -1,8 +1,8 @@
 //! What is kept from one session to the next: the lines that were typed after `:`, macros, registers, and for each scene the
-//! marks, the collapsed nodes, the cursor and what is muted, solo or locked. Places come back as lines, and a register is written into the log when it is used,
+//! marks, the collapsed nodes, the cursor, what is muted, solo or locked, and which overlays are shown. Places come back as lines, and a register is written into the log when it is used,
 //! so that the log of a session leads to the same scene without what was kept.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -77,7 +77,8 @@ pub fn keep_places(state: &State, before: Value, path: &Path) -> Value {
     serde_json::to_value(kept).unwrap_or_default()
 }
 
-/// The lines that lead to the marks, the collapsed nodes, the cursor and what is muted, solo or locked in this scene.
+/// The lines that lead to the marks, the collapsed nodes, the cursor, what is muted, solo or locked in this scene, and the overlays
+/// that are shown.
 fn lines_to(state: &State) -> Vec<String> {
     let address = |pointer: &str| address::address(state.document(), pointer);
     let way = |spot: &Spot| {
@@ -99,7 +100,11 @@ fn lines_to(state: &State) -> Vec<String> {
     let apart = &state.apart;
     let apart = [("mute", &apart.muted), ("solo", &apart.solo), ("lock", &apart.locked)].into_iter();
     let apart = apart.flat_map(|(name, set)| set.iter().map(move |pointer| format!("{name} {}", address(pointer))));
-    let lines = marks.chain(way(&state.spot())).chain(folds).chain(apart);
+    // What is off in the picture is off in windows too, if it is one of theirs.
+    let off = state.picture.off.iter().map(|name| format!("{name} off"));
+    let views: BTreeSet<String> = off.chain(state.picture.switches.changed()).collect();
+    let views = views.into_iter().map(|command| format!("view {command}"));
+    let lines = marks.chain(way(&state.spot())).chain(folds).chain(apart).chain(views);
     lines.filter(|line| !line.contains(char::is_control)).collect()
 }
 
@@ -145,6 +150,22 @@ mod tests {
         assert_eq!(at(&next, motion).as_array().map(Vec::len), Some(5));
         let again = crate::tui::tests::support::replayed(&next);
         assert_eq!(again.document().json(), next.document().json());
+    }
+
+    #[test]
+    fn overlays_come_back_here_and_in_windows() {
+        let mut first = state();
+        press(&mut first, "z v z o z o z t");
+        let path = Path::new("/a/scene.plica.json");
+        let lines = places(keep_places(&first, Value::Null, path), path);
+        let mut next = state();
+        for line in &lines {
+            obey(&mut next, line, None).unwrap_or_else(|why| panic!("{line}: {why}"));
+        }
+        assert_eq!(next.picture.switches, first.picture.switches);
+        assert_eq!(next.picture.off, first.picture.off);
+        let views: Vec<&str> = lines.iter().filter_map(|line| line.strip_prefix("view ")).collect();
+        assert_eq!(views, ["view-checkerboard off", "view-field on", "view-outlines off"]);
     }
 
     #[test]

@@ -208,6 +208,9 @@ fn commands_set_and_say() {
         ("set layers.face.zones.mouth.speeed=1", "speed"),
         ("q", ":q!"),
         ("probe x", "X,Y"),
+        ("view zoom-in on", "no switch"),
+        ("select within 1 2 3 x", "\"x\""),
+        ("cursor 1 x", "\"x\""),
     ] {
         let mut state = state();
         press(&mut state, "/ \"speed\" Enter + :");
