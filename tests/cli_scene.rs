@@ -253,6 +253,7 @@ fn set_takes_all_or_nothing() {
     ]));
     assert_eq!(ok(plica(at, &["get", "cat.plica.json", "/layers/0/zones/0/motion/0/jump"])), "[0, -2]\n");
     assert_eq!(ok(plica(at, &["get", "cat.plica.json", "title"])), "\"2024\"\n");
+    assert_eq!(ok(plica(at, &["get", "cat.plica.json", "timeline.fps"])), "30\n");
     let before = std::fs::read_to_string(at.join("cat.plica.json")).unwrap();
     for (settings, status, part) in [
         (&["title=Dog", "Z.feather=-1"][..], 1, "-1 is too small: 0 to 1000000 px"),

@@ -33,6 +33,16 @@ pub fn written(number: &Number) -> String {
     number.as_f64().filter(|_| number.is_f64()).map_or_else(|| number.to_string(), text)
 }
 
+/// A value with all its numbers changed, and as a person writes them.
+pub fn mapped(value: Value, change: fn(f64) -> f64) -> Value {
+    match value {
+        Value::Number(number) => number.as_f64().map_or(Value::Number(number), |n| json(change(n))),
+        Value::Array(all) => all.into_iter().map(|value| mapped(value, change)).collect(),
+        Value::Object(all) => all.into_iter().map(|(key, value)| (key, mapped(value, change))).collect(),
+        other => other,
+    }
+}
+
 /// The nearest number with so many decimals, as a person would write it.
 pub fn rounded(value: f64, decimals: u32) -> f64 {
     let parts = powi(10.0, decimals);

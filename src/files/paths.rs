@@ -152,6 +152,8 @@ fn explain(place: &str, path: &Path, error: io::Error) -> Error {
             let missing = || Error::at(place, "there is no such file").cure(how_to_find(path));
             no_layer(place, path).or_else(|| dangling(place, path)).unwrap_or_else(missing)
         }
+        io::ErrorKind::NotADirectory => Error::at(place, "is to be in a folder that is a file").cure("mend the path"),
+        io::ErrorKind::PermissionDenied => Error::at(place, "may not be read").cure("change who may read it"),
         _ => Error::at(place, format!("cannot be opened: {error}")),
     }
 }
@@ -263,6 +265,7 @@ mod tests {
             ("sub/Cat.jpg", Some("no such file (did you mean cat.png?)"), Some("no such file (did you mean cat.png?)")),
             ("gone/a.png", Some("no such file (there is no folder "), Some("no such file (there is no folder ")),
             ("no.exr#layer", Some("no such file"), Some("no such file")),
+            ("sub/cat.png/x.png", Some("a folder that is a file (mend"), Some("a folder that is a file (mend")),
             ("nowhere.png", Some("a link to away.png, which is not there"), Some("(mend the link)")),
             ("model.bin", Some("no such file (put it there"), Some("no such file (put it there")),
             ("sub/b.GLB#12", None, None),

@@ -28,7 +28,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     };
     let pointer = address::resolve(&document, &args.path)?;
     let value =
-        field::counting(&document, &pointer).ok_or_else(|| Error::at(&args.path, "is not set, and has no default"))?;
+        field::told(&document, &pointer).ok_or_else(|| Error::at(&args.path, "is not set, and has no default"))?;
     let text = crate::scene::json::to_text(&value);
     context.print(text.trim_end())
 }

@@ -9,6 +9,7 @@ use super::json_schema::range_text;
 use super::named::name_of;
 use super::schema::{Body, Place, Shape};
 use super::{Document, FRAME};
+use crate::base::number;
 use crate::base::pointer::{self, Pointer};
 use crate::layers::technique::Technique;
 
@@ -145,6 +146,13 @@ pub fn counting(document: &Document, pointer: &str) -> Option<Value> {
         .filter(|value| !value.is_null())
         .or_else(|| in_force(document, pointer))
         .or_else(|| value(document, pointer))
+}
+
+/// The same as a person writes it: `40` where the schema's default is `40.0`; what is written stays as it is.
+pub fn told(document: &Document, pointer: &str) -> Option<Value> {
+    let is_written = document.json().pointer(pointer).is_some_and(|written| !written.is_null());
+    let value = counting(document, pointer)?;
+    Some(if is_written { value } else { number::mapped(value, |number| number) })
 }
 
 /// The formula of the thing at `pointer`, by its tag; `None` if it has none.

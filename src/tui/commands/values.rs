@@ -54,7 +54,7 @@ fn set(state: &mut State, call: &Call) -> Done {
 
 fn get(state: &mut State, call: &Call) -> Done {
     let pointer = state.resolve(call.text)?;
-    let value = field::counting(state.document(), &pointer);
+    let value = field::told(state.document(), &pointer);
     let value = value.ok_or_else(|| format!("{} is not set, and has no default", call.text))?;
     state.say(plain(&value.to_string()));
     Ok(())

@@ -3,11 +3,11 @@
 
 use serde_json::Value;
 
+use crate::base::number;
 use crate::base::pointer::Pointer;
 use crate::layers::parts::derived::Derived;
 use crate::scene::Document;
 use crate::scene::field::{self, Field, Kind, layer_of};
-use crate::tui::text::numbers;
 
 /// The value at a place; if it is not set and the schema has no default, the one that its layer has for it.
 pub fn value(document: &Document, pointer: &str) -> Option<Value> {
@@ -17,7 +17,7 @@ pub fn value(document: &Document, pointer: &str) -> Option<Value> {
 
 /// The value that a layer has for a field that is not set.
 pub fn automatic(document: &Document, pointer: &str) -> Option<Value> {
-    Some(numbers::mapped(field::in_force(document, pointer)?, numbers::tidy))
+    Some(number::mapped(field::in_force(document, pointer)?, number::tidy))
 }
 
 /// What is known of a column.

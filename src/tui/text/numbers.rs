@@ -76,17 +76,7 @@ pub fn with_length(vector: Vec2, length: f64) -> Vec2 {
 
 /// Every number of a value with six decimals at most: what was pointed at is no more exact.
 pub fn rounded(value: Value) -> Value {
-    mapped(value, |value| number::rounded(value, 6))
-}
-
-/// A value with all its numbers changed.
-pub fn mapped(value: Value, change: fn(f64) -> f64) -> Value {
-    match value {
-        Value::Number(number) => number.as_f64().map_or(Value::Number(number), |n| number::json(change(n))),
-        Value::Array(all) => all.into_iter().map(|value| mapped(value, change)).collect(),
-        Value::Object(all) => all.into_iter().map(|(key, value)| (key, mapped(value, change))).collect(),
-        other => other,
-    }
+    number::mapped(value, |value| number::rounded(value, 6))
 }
 
 #[cfg(test)]
