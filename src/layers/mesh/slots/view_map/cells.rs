@@ -257,3 +257,22 @@ fn met(corners: &[DVec2; 3], mut each: impl FnMut(i32, i32)) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn automatic_layers_end_where_the_finest_would_have_too_many_cells() {
+        let atlas = Atlas { extents: vec![DVec2::ONE], ..Atlas::default() };
+        // 64 * 2^5 = 2048 side by side fit, 4096 and one more at the border do not.
+        for (first, levels, fits) in
+            [(64, 3, 3), (64, 6, 6), (64, 7, 6), (64, 20, 6), (4095, 2, 1), (5000, 2, 1), (64, 0, 0)]
+        {
+            assert_eq!(Cells::fitting(&atlas, first, levels), fits, "{levels} layers from {first}");
+        }
+        let two = Atlas { extents: vec![DVec2::ONE, DVec2::new(0.5, 1.0)], ..Atlas::default() };
+        assert_eq!(Cells::most(&two, 2, 2), 25.0 + 15.0, "squares of all charts");
+        assert_eq!(Cells::fitting(&two, 2048, 2), 1);
+    }
+}
