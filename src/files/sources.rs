@@ -115,6 +115,7 @@ mod tests {
                 b"glTF",
                 "is a mesh, not a video (call it .obj, .glb or .gltf, and list it among the scene's meshes)",
             ),
+            ("cow.OBJ", b"v 0 0 0\n", "is a mesh, not a video (list it among the scene's meshes)"),
             ("a.mp4", b"{ \"plica\": 1 }", "is a Plica scene, not a video (plica edit opens it)"),
             ("cow.mp4", b"v 0 0 0\n", "is a mesh, not a video"),
             ("a.mp4", b"", "is empty (copy it again from where it came)"),

@@ -56,7 +56,12 @@ pub(super) fn instead(start: &[u8], place: &str) -> Option<[&'static str; 2]> {
     match () {
         () if is_scene(start) => Some(SCENE),
         () if kind(start, place).is_ok() => {
-            Some(["a mesh", "call it .obj, .glb or .gltf, and list it among the scene's meshes"])
+            let is_called_so = [".obj", ".glb", ".gltf"].iter().any(|end| place.to_lowercase().ends_with(end));
+            let cure = match is_called_so {
+                true => "list it among the scene's meshes",
+                false => "call it .obj, .glb or .gltf, and list it among the scene's meshes",
+            };
+            Some(["a mesh", cure])
         }
         () => None,
     }

@@ -19,6 +19,7 @@ use crate::render::{frame_size, reach};
 use crate::scene::Scene;
 use crate::tui::events::Effect;
 use crate::tui::state::State;
+use crate::tui::state::outside::Asking;
 use crate::tui::text::numbers::{rounded, short};
 
 pub const COMMANDS: &[Command] = &[command(
@@ -43,11 +44,12 @@ const SAME_TIME: f64 = 1e-6;
 fn camera(state: &mut State, call: &Call) -> Done {
     match call.text {
         "fit" => see_all(state, call.table),
-        word if state.outside.window.is_empty() => of_window(state, call.table, word),
+        word if state.outside.window.is_empty() => of_window(state, call.table, (word, state.play.time)),
         // A window that draws slowly has not told its last keys yet.
         _ if state.outside.work.is_some() => Err("something is running already: Esc ends it".into()),
         word => {
-            (state.outside.asking, state.outside.work) = (Some(word.to_owned()), Some(ASKING.to_owned()));
+            state.outside.asking = Some(Asking { word: word.to_owned(), time: state.play.time });
+            state.outside.work = Some(ASKING.to_owned());
             state.ask(Effect::Ask);
             Ok(())
         }
@@ -56,21 +58,21 @@ fn camera(state: &mut State, call: &Call) -> Done {
 
 /// The windows have told where they look from, but for so many that have not.
 pub fn answered(state: &mut State, table: &'static Table, silent: usize) {
-    let Some(word) = state.outside.asking.take() else { return };
+    let Some(Asking { word, time }) = state.outside.asking.take() else { return };
     state.outside.work = None;
     if silent > 0 {
         return state.complain("the window does not tell where it looks from: try again once it has drawn");
     }
-    if let Err(why) = of_window(state, table, &word) {
+    if let Err(why) = of_window(state, table, (&word, time)) {
         state.complain(why);
     }
 }
 
-/// Does what the camera of the window is wanted for.
-fn of_window(state: &mut State, table: &'static Table, word: &str) -> Done {
+/// Does what the camera of the window is wanted for, at a scene time.
+fn of_window(state: &mut State, table: &'static Table, (word, time): (&str, f64)) -> Done {
     match word {
         "take" => take(state, table),
-        _ => key(state, table),
+        _ => key(state, table, time),
     }
 }
 
@@ -83,10 +85,9 @@ fn take(state: &mut State, table: &'static Table) -> Done {
     write(state, table, rounded(standing(&own)), "the window's camera is the scene's now")
 }
 
-/// Sets the window's view, or that of the scene, as a key at the present time. What the other keys do not name they get as it is at
+/// Sets the window's view, or that of the scene, as a key at this time. What the other keys do not name they get as it is at
 /// their times, since it would be that of the new key there.
-fn key(state: &mut State, table: &'static Table) -> Done {
-    let time = state.play.time;
+fn key(state: &mut State, table: &'static Table, time: f64) -> Done {
     let scene = state.document().scene().camera.clone();
     let scene = scene.ok_or("the scene has no camera: :camera fit makes one")?;
     let seen = state.outside.camera.as_ref().map_or_else(|| scene.view(time), |own| own.view(time));

@@ -164,6 +164,11 @@ fn probe(state: &mut State, call: &Call) -> Done {
     if !call.text.is_empty() {
         let numbers: Vec<f64> = call.text.split(',').filter_map(|part| part.trim().parse().ok()).collect();
         let [x, y] = numbers[..] else { return Err("probe takes X,Y or off".into()) };
+        if let Some((width, height)) = state.picture.size
+            && !((0.0..width as f64).contains(&x) && (0.0..height as f64).contains(&y))
+        {
+            return Err(format!("{} is outside the picture of {width} x {height} pixels", call.text));
+        }
         state.picture.cursor = (x, y).into();
         state.picture.step(Vec2::ZERO);
     } else {

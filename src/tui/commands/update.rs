@@ -19,8 +19,34 @@ use crate::tui::keys::Meaning;
 use crate::tui::layout::first_row;
 use crate::tui::state::{Mode, Pages, Pane, State, looking, painting};
 
-/// Handles an event, and returns what is to be done outside.
+/// Handles an event, and returns what is to be done outside. What is typed while windows are asked something comes after that.
 pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
+    if state.outside.asking.is_some() && waits(&event) {
+        state.outside.postponed.push_back(event);
+        return Vec::new();
+    }
+    handle(state, event);
+    while state.outside.asking.is_none()
+        && let Some(event) = state.outside.postponed.pop_front()
+    {
+        handle(state, event);
+    }
+    painting::follow(state);
+    tutor::follow(state);
+    state.ask_waiting();
+    state.effects.drain(..).collect()
+}
+
+/// Whether it is something that a person asks for, but for Esc, which ends what is waited for.
+fn waits(event: &Event) -> bool {
+    match event {
+        Event::Key(key) => key != "Esc",
+        Event::Line(_) | Event::Paste(_) | Event::Click(..) => true,
+        _ => false,
+    }
+}
+
+fn handle(state: &mut State, event: Event) {
     match event {
         Event::Key(key) => press(state, &key),
         Event::Line(line) => {
@@ -69,10 +95,6 @@ pub fn update(state: &mut State, event: Event) -> Vec<Effect> {
         Event::End => state.ask(Effect::Quit),
         Event::Stop => state.ask(Effect::Suspend),
     }
-    painting::follow(state);
-    tutor::follow(state);
-    state.ask_waiting();
-    state.effects.drain(..).collect()
 }
 
 /// Handles messages of windows and scripts.

@@ -1,20 +1,21 @@
 //! What the editor knows of the file, the window and long work, and its questions about unsaved edits that were left behind
 //! and about somebody else who is editing the scene.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;
 
 use crate::base::problem::Problem;
 use crate::layers::space::camera::Camera;
 use crate::tui::document::choice::{About, Choice, Question, Then};
 use crate::tui::document::open_scene::OpenScene;
+use crate::tui::events::Event;
 use crate::tui::text::plain;
 
 /// How many changes are shown in a question. One of its answers shows all.
 const FEW: usize = 5;
 
 /// What the editor knows of the file, the window and long work.
-#[derive(Clone, Debug, Default)]
+#[derive(Default)]
 pub struct Outside {
     /// A question that waits until nothing else is going on.
     pub waiting: Option<Choice>,
@@ -34,8 +35,19 @@ pub struct Outside {
     pub dragged: Option<(String, u64)>,
     /// The camera that a window shows, where it is not the scene's: what was said last, if there are several windows.
     pub camera: Option<Camera>,
-    /// What is to be done with that once the windows have told what they had not: a word of `camera`.
-    pub asking: Option<String>,
+    /// What is to be done with that once the windows have told what they had not.
+    pub asking: Option<Asking>,
+    /// What was typed meanwhile, which comes after it.
+    pub postponed: VecDeque<Event>,
+}
+
+/// What the camera of the windows is wanted for.
+#[derive(Clone, Debug)]
+pub struct Asking {
+    /// A word of `camera`.
+    pub word: String,
+    /// The scene time when that was typed.
+    pub time: f64,
 }
 
 /// Rows that have been sent through a program.

@@ -90,6 +90,21 @@ fn what_the_window_has_not_told_is_waited_for() {
 }
 
 #[test]
+fn what_is_typed_while_the_window_is_asked_comes_after_it() {
+    let mut state = state_of(SCENE);
+    state.outside.window = "window".into();
+    state.play.time = 0.25;
+    run(&mut state, "camera key");
+    state.play.time = 0.75;
+    update(&mut state, said(Gesture::Camera(Some(own()))));
+    update(&mut state, Event::Line("set camera.fov=20".into()));
+    assert!(update(&mut state, Event::Line("wq".into())).is_empty(), "nothing is saved before it");
+    let effects = update(&mut state, answer(0));
+    assert_eq!((camera(&state)["keys"][0]["at"].clone(), camera(&state)["fov"].clone()), (json!(0.25), json!(20)));
+    assert!(matches!(effects.last(), Some(Effect::Save { leave: true, .. })), "{effects:?}");
+}
+
+#[test]
 fn a_key_shows_at_its_time_what_the_window_shows() {
     let mut state = state_of(SCENE);
     state.play.time = 0.5;

@@ -225,7 +225,8 @@ pub fn the_read_out_opens_follows_and_closes() {
         (": \"probe 12,13\" Enter", true, Some((12, 13))),
         (": \"probe 12,13\" Enter : \"probe 14,15\" Enter", true, Some((14, 15))),
         (": \"probe 12,13\" Enter : \"probe off\" Enter", false, None),
-        (": \"probe 1e9,13\" Enter", true, Some((63, 13))),
+        (": \"probe 63.5,13\" Enter", true, Some((63, 13))),
+        (": \"probe 1e9,13\" Enter", false, None),
     ] {
         let mut state = opened((80, 24));
         press(&mut state, keys);

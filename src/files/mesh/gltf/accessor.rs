@@ -169,6 +169,12 @@ impl Source<'_> {
         let view = self.get(&self.document.buffer_views, part.buffer_view, "buffer view")?;
         let size = N * component.size();
         let stride = view.byte_stride.filter(|&stride| stride > 0).unwrap_or(size as u64);
+        if stride < size as u64 {
+            let view = part.buffer_view;
+            return Err(self.wrong(format!(
+                "the byteStride of buffer view {view} is {stride}, and an element of accessor {index} has {size} bytes"
+            )));
+        }
         let needed = count.saturating_sub(1).saturating_mul(stride).saturating_add(size as u64);
         let needed = if count == 0 { 0 } else { needed };
         let bytes = self.view(part.buffer_view)?;

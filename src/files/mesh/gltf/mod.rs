@@ -131,9 +131,12 @@ impl<'a> Shape<'a> {
                 None | Some(4) => Mode::List,
                 Some(5) => Mode::Strip,
                 Some(6) => Mode::Fan,
-                Some(_) => {
+                Some(0..=3) => {
                     shape.others = true;
                     continue;
+                }
+                Some(none) => {
+                    return Err(source.wrong(format!("mesh {mesh} has a primitive of mode {none}: there are 0 to 6")));
                 }
             };
             let material = primitive.material.and_then(|material| source.document.materials.get(material));

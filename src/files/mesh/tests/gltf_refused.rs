@@ -100,6 +100,16 @@ fn what_is_wrong_with_accessors_is_told_by_its_number() {
              (make it smaller, or give --limit triangles=10000001)"
                 .to_owned(),
         ),
+        (
+            "/bufferViews/0/byteStride",
+            json!(5),
+            format!("the byteStride of buffer view 0 is 5, and an element of accessor 0 has 12 bytes {AGAIN}"),
+        ),
+        (
+            "/meshes/0/primitives/0/mode",
+            json!(9),
+            format!("mesh 0 has a primitive of mode 9: there are 0 to 6 {AGAIN}"),
+        ),
         ("/accessors/3/count", json!(7), format!("accessor 3 has 7 elements: its buffer view 3 is too short {AGAIN}")),
         ("/accessors/3/componentType", json!(5120), format!("accessor 3 is not of whole numbers {AGAIN}")),
         ("/accessors/3/componentType", json!(5126), format!("accessor 3 is not of whole numbers {AGAIN}")),
