@@ -19,6 +19,10 @@ pub fn draw(frame: &mut Frame, state: &State) {
     if !fits((screen.width, screen.height)) {
         return too_small(frame, state, screen);
     }
+    // The terminal has another size by now, and the event that tells it is on its way.
+    if (screen.width, screen.height) != state.size {
+        return;
+    }
     if let Some(tutor) = &state.tutor {
         panes::lesson::draw(tutor, &state.keymap, screen, frame.buffer_mut());
     }
