@@ -12,6 +12,7 @@ use plica::base::pixels::Frame;
 use plica::files::profiles;
 use plica::layers::Layer;
 use plica::layers::folding::synth::Synth;
+use plica::render::seams;
 use plica::scene::{Document, presets};
 use show::{Show, TIMES, at, no_seam, step, still_outside};
 
@@ -115,9 +116,12 @@ fn the_demo_of_a_preset_is_the_default_layer_with_it() {
 }
 
 #[test]
-fn shipped_frames_are_golden() {
+fn shipped_frames_are_golden_and_no_loop_snaps() {
     for profile in profiles::TABLE {
-        golden(profile.name, &shipped(profile.name));
+        let show = shipped(profile.name);
+        golden(profile.name, &show);
+        let snaps = seams::warnings(show.document.scene(), &show.materials, || Some(&show.synth));
+        assert!(snaps.is_empty(), "{}: {snaps:?}", profile.name);
     }
 }
 
