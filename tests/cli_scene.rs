@@ -233,6 +233,14 @@ fn new_copies_pictures_of_other_folders() {
     std::fs::write(folder.path().join("no.png"), "no picture").unwrap();
     assert_eq!(plica(folder.path(), &["new", "no.png"]).status, 1);
     assert!(!folder.path().join("no.plica.json").exists());
+    for (place, told) in [
+        ("none/a.plica.json", "none/a.plica.json: there is no folder none (make it first)"),
+        ("a.png", "a.png: is what a picture, a model or a video is called (call the scene NAME.plica.json with -o)"),
+        ("a.GLB", "a.GLB: is what a picture, a model or a video is called"),
+    ] {
+        let refused = plica(folder.path(), &["new", "cat.png", "-o", place]);
+        assert!(refused.status == 1 && refused.messages.starts_with(&format!("plica: {told}")), "{refused:?}");
+    }
 }
 
 #[test]

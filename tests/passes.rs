@@ -176,4 +176,7 @@ fn a_probe_is_of_what_is_seen() {
         (&"near".into(), &serde_json::json!({ "error": why }), &serde_json::Value::Null)
     );
     assert!(status.code() == Some(1) && String::from_utf8_lossy(&stderr).contains(why));
+    let plain = run(folder.path(), "probe s.plica.json --at 20,12 --at 48,0 --at 2,2").stdout;
+    let plain = String::from_utf8_lossy(&plain).into_owned();
+    assert!(plain.find("near") < plain.find(why) && plain.contains(&format!("{why}\n")), "{plain}");
 }

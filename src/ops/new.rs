@@ -72,7 +72,7 @@ pub fn clip_called(clip: &Path) -> String {
 /// # Errors
 /// If the scene, or another file with a picture's name, exists already; if a picture cannot be read or copied.
 pub fn create(path: &Path, sources: &[PathBuf], options: &files::Options) -> Result<(Document, Vec<String>)> {
-    refuse_taken(path)?;
+    refuse_place(path)?;
     let mut making = Making {
         path,
         options,
@@ -98,7 +98,12 @@ pub fn create(path: &Path, sources: &[PathBuf], options: &files::Options) -> Res
     Ok((document, making.notes))
 }
 
-fn refuse_taken(path: &Path) -> Result<()> {
+/// Refuses a place where a scene cannot be written, before anything is copied beside it.
+fn refuse_place(path: &Path) -> Result<()> {
+    let folder = disk::folder_of(path);
+    if !folder.is_dir() {
+        return Err(Error::at(path.display(), format!("there is no folder {}", folder.display())).cure("make it first"));
+    }
     let there = path.symlink_metadata();
     if there.as_ref().is_err_and(|error| error.kind() == ErrorKind::InvalidFilename) {
         return Err(Error::at(path.display(), "is too long a name for a file").cure("name the scene with -o"));
@@ -106,6 +111,10 @@ fn refuse_taken(path: &Path) -> Result<()> {
     if there.is_ok() {
         let cure = format!("edit it (plica edit {}), or choose another name with -o", path.display());
         return Err(Error::at(path.display(), "is there already").cure(cure));
+    }
+    if path.to_str().and_then(paths::kind_of).is_some() {
+        let error = Error::at(path.display(), "is what a picture, a model or a video is called");
+        return Err(error.cure("call the scene NAME.plica.json with -o"));
     }
     Ok(())
 }

@@ -59,11 +59,14 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
         let pixel = match pixel_at(*at, size) {
             Ok(pixel) => pixel,
             Err(error) => {
-                if args.json {
-                    context.print(json!({ "error": error.to_string() }))?;
+                // In its place among the answers, and what fails in the end.
+                let told = error.to_string();
+                match args.json {
+                    true => context.print(json!({ "error": told }))?,
+                    false if args.at.len() > 1 => context.print(told)?,
+                    false => {}
                 }
-                let before: Option<Error> = outside.replace(error);
-                before.into_iter().for_each(|error| context.messages.say(&error.to_string()));
+                outside = Some(error);
                 continue;
             }
         };
