@@ -46,8 +46,8 @@ fn camera(state: &mut State, call: &Call) -> Done {
         "fit" => see_all(state, call.table),
         word if state.outside.window.is_empty() => of_window(state, call.table, (word, state.play.time)),
         // A window that draws slowly has not told its last keys yet.
-        _ if state.outside.work.is_some() => Err("something is running already: Esc ends it".into()),
         word => {
+            state.outside.idle()?;
             state.outside.asking = Some(Asking { word: word.to_owned(), time: state.play.time });
             state.outside.work = Some(ASKING.to_owned());
             state.ask(Effect::Ask);
@@ -151,7 +151,13 @@ fn see_all(state: &mut State, table: &'static Table) -> Done {
     }
     let [position, target] = seen.map(Into::into);
     let fitted = Camera { position, target, up: up.into(), fov, ..Camera::default() };
-    write(state, table, standing(&fitted), "the camera sees all that is in space")
+    let is_shown = state.document().scene().layers.iter().any(is_in_space);
+    let said = if is_shown {
+        "the camera sees all that is in space"
+    } else {
+        "the camera sees all meshes, but no layer shows one"
+    };
+    write(state, table, standing(&fitted), said)
 }
 
 /// A camera that stands still, without what is so anyway.

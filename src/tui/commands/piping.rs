@@ -29,9 +29,7 @@ fn pipe(state: &mut State, call: &Call) -> Done {
     if call.text.is_empty() {
         return Err("pipe takes a program: :pipe sort -t, -k2 -n, or :pipe awk -F, '{print}'".into());
     }
-    if state.outside.work.is_some() {
-        return Err("something is running already: Esc ends it".into());
-    }
+    state.outside.idle()?;
     state.scene.writable()?;
     let (sheet, selected) = table(state, call)?;
     if state.cursor.focus == Pane::Tree {

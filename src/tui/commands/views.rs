@@ -29,6 +29,10 @@ pub const COMMANDS: &[Command] = &[command(
 // What is painted over is what is seen.
 .awaiting(|_, text| text.starts_with("add "))];
 
+/// What is done with views; the last four on the command line too.
+const WORDS: [&str; 6] = ["go", "take", "add", "guide", "import", "balance"];
+const OF_SHELL: &[&str] = &["add", "guide", "import", "balance"];
+
 fn views(state: &mut State, call: &Call) -> Done {
     let words = words(call.text)?;
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
@@ -47,6 +51,13 @@ fn views(state: &mut State, call: &Call) -> Done {
             Ok(())
         }
         ["take", name @ ..] if name.len() <= 1 => take(state, call, name.first().copied()),
+        ["add" | "import"] => {
+            Err(format!("{} is followed by {}", words[0], if words[0] == "add" { "a name" } else { "a file" }))
+        }
+        [first, ..] if !first.starts_with('-') && !OF_SHELL.contains(first) => {
+            let hint = nearest(first, WORDS.into_iter()).unwrap_or_default();
+            Err(format!("views takes no {} ({hint})", quoted(first)))
+        }
         _ => {
             outside(state, &words);
             Ok(())
@@ -87,6 +98,8 @@ fn add(state: &mut State, name: &str, kind: Option<&str>, size: Option<&str>) ->
     let scene = (state.scene.path(), state.document());
     let (applied, picture) = paint::begin(scene, &synth, &sight, (name, kind)).map_err(|error| error.to_string())?;
     state.edit(applied.edit, false)?;
+    let count = state.document().scene().layers[layer].technique().lying().map_or(0, |lying| lying.len());
+    state.picture.laid = count.checked_sub(1).map(|last| (layer, last));
     state.say(plain(&applied.told));
     let picture = std::path::absolute(picture).map_err(|error| error.to_string())?;
     state.ask(Effect::EditImage(picture));
@@ -137,6 +150,7 @@ fn go(state: &mut State, name: Option<&str>) -> Done {
     }
     let layer = layer(state)?;
     let (index, name) = view(state, layer, name)?;
+    state.picture.laid = Some((layer, index));
     let technique = state.document().scene().layers[layer].technique();
     let from = technique.lying().and_then(|lying| lying.get(index)?.from).ok_or("its camera sees nothing")?;
     let place = technique.model_to_world(state.play.time).ok_or("the layer has no model")?;

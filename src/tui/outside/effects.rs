@@ -197,8 +197,8 @@ impl Editor {
 
     /// Starts a subcommand on the open scene as it is now, or as it is shown.
     fn start(&mut self, words: &[String], seen: bool) {
-        if self.state.outside.work.is_some() {
-            return self.state.complain("something is running already: Esc ends it");
+        if let Err(why) = self.state.outside.idle() {
+            return self.state.complain(why);
         }
         let path = self.state.scene.path().to_owned();
         let words: Vec<String> = words.iter().map(|word| at_home(word)).collect();

@@ -41,6 +41,19 @@ pub struct Outside {
     pub postponed: VecDeque<Event>,
 }
 
+impl Outside {
+    /// Refuses to start something beside what is running.
+    ///
+    /// # Errors
+    /// What that is.
+    pub fn idle(&self) -> Result<(), String> {
+        match &self.work {
+            Some(work) => Err(format!("something is running already ({}): Esc ends it", plain(work))),
+            None => Ok(()),
+        }
+    }
+}
+
 /// What the camera of the windows is wanted for.
 #[derive(Clone, Debug)]
 pub struct Asking {

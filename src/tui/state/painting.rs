@@ -19,8 +19,8 @@ use crate::tui::graphics::viewport::Viewport;
 /// How near to the poles one goes, in degrees.
 const HIGHEST: f64 = 85.0;
 
-/// The picture on a mesh that is painted on: that of the row under the cursor, else the first of its layer, else the first of
-/// all; its layer, its index and its name.
+/// The picture on a mesh that is painted on: that of the row under the cursor, else the one that was selected last, else the
+/// first of its layer, else the first of all; its layer, its index and its name.
 pub fn current(state: &State) -> Option<(usize, usize, String)> {
     let focused = state.focused();
     let layers = state.document().scene().layers.iter().enumerate();
@@ -29,15 +29,21 @@ pub fn current(state: &State) -> Option<(usize, usize, String)> {
         let lying = technique.lying().filter(|lying| !lying.is_empty())?;
         let path = format!("/layers/{i}");
         let list = format!("{path}{}", technique.lay(&[]).map_or("", |laying| laying.list));
-        let row = Pointer(&focused).item_of(&list).map(|(row, _)| row).filter(|row| *row < lying.len());
-        let is_own = Pointer(&focused).is_within(&path);
-        let index = row.unwrap_or(0);
-        Some((row.is_some(), is_own, (i, index, lying[index].name.to_owned())))
+        let is_there = |row: &usize| *row < lying.len();
+        let row = Pointer(&focused).item_of(&list).map(|(row, _)| row).filter(is_there);
+        let last = state.picture.laid.filter(|(layer, _)| *layer == i).map(|(_, row)| row).filter(is_there);
+        let nearness = match (row, last) {
+            (Some(_), _) => 3,
+            (None, Some(_)) => 2,
+            (None, None) => i32::from(Pointer(&focused).is_within(&path)),
+        };
+        let index = row.or(last).unwrap_or(0);
+        Some((nearness, (i, index, lying[index].name.to_owned())))
     });
-    // Of several the first.
+    // Of several that are as near the first.
     let found: Vec<_> = found.collect();
-    let best = found.iter().find(|(row, ..)| *row).or_else(|| found.iter().find(|(_, own, _)| *own)).or(found.first());
-    best.map(|(.., view)| view.clone())
+    let nearest = found.iter().map(|(nearness, _)| *nearness).max()?;
+    found.into_iter().find(|(nearness, _)| *nearness == nearest).map(|(_, view)| view)
 }
 
 /// What the pane shows in place of what the scene's camera sees.
@@ -118,8 +124,11 @@ pub fn size(state: &State) -> Option<(usize, usize)> {
     Some(painted().unwrap_or(synth.size))
 }
 
-/// Has windows show what the pane shows, and takes the size of that. Where it is another, the pane shows all of it.
+/// Notes which picture is selected, has windows show what the pane shows, and takes the size of that. Where it is another, the pane shows all of it.
 pub fn follow(state: &mut State) {
+    if let Some((layer, index, _)) = current(state) {
+        state.picture.laid = Some((layer, index));
+    }
     let sight = sight(state);
     if state.picture.told != sight {
         state.picture.told = sight;

@@ -31,6 +31,8 @@ pub struct Picture {
     pub looking: Option<Looking>,
     /// How one paints on a mesh, in the layout for that.
     pub painting: Option<Painting>,
+    /// The picture on a mesh that was selected last, by its layer and its index: it is painted on while the cursor is elsewhere.
+    pub laid: Option<(usize, usize)>,
     /// What windows were told to show in place of what the camera sees.
     pub told: Option<Sight>,
     /// Which overlays are shown here and in the windows. Those of the document alone are shown here until they are turned off.
@@ -73,6 +75,7 @@ impl Picture {
             pass: None,
             looking: None,
             painting: None,
+            laid: None,
             told: None,
             switches: Switches::default(),
             off: BTreeSet::new(),

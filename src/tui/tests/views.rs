@@ -20,7 +20,7 @@ use crate::tui::events::Effect;
 use crate::tui::graphics::TerminalPicture;
 use crate::tui::layout::{self, picture};
 use crate::tui::panes;
-use crate::tui::state::{State, place};
+use crate::tui::state::{State, painting, place};
 use crate::tui::text::color::Depth;
 
 const SCENE: &str = r##"{
@@ -79,6 +79,17 @@ fn what_is_seen_is_painted_over_from_where_it_is_seen() {
     assert_eq!(at(&state, "/layers/0/surface/kind"), json!("plain"), "one step of undo");
     assert!(run(&mut state, "views add flowers").0.contains("is there already"), "the file");
     assert!(run(&mut state, "views add ../x").0.contains("is no name for a file"));
+    for (line, told) in [
+        ("views add", "add is followed by a name"),
+        ("views import", "import is followed by a file"),
+        ("views tak", "views takes no \"tak\" (did you mean \"take\"?)"),
+        (
+            "views frob",
+            "views takes no \"frob\" (there are \"go\", \"take\", \"add\", \"guide\", \"import\", \"balance\")",
+        ),
+    ] {
+        assert_eq!(run(&mut state, line).0, told, "{line}");
+    }
     assert!(run(&mut state, "views add big both 99999x1").0.contains("1 to 16384 pixels"));
     (state.picture.synth, state.picture.synthesising, state.picture.read) = (None, true, Some(34));
     assert!(run(&mut state, "views add soon").0.contains("still being made (34 %)"));
@@ -157,6 +168,23 @@ fn points_go_on_the_sphere(state: &mut State) {
     assert_eq!(blend["target"], at(state, "/layers/0/surface/views/5/camera/target"));
     press(state, "u u u u");
     assert_eq!((at(state, extremes), at(state, "/layers/0/surface/blend")), (before, json!(null)));
+}
+
+#[test]
+fn the_view_that_was_selected_last_is_painted_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut state = opened(folder.path());
+    run(&mut state, "views add a both 8x6");
+    show(&mut state);
+    let name = |state: &State| painting::current(state).map(|(.., name)| name).unwrap();
+    assert_eq!(name(&state), "a", "it has come last");
+    run(&mut state, "go layers.wall.surface.views.1");
+    let second = name(&state);
+    run(&mut state, "go timeline");
+    assert!(name(&state) == second && second != "a");
+    state.outside.window = "window".into();
+    run(&mut state, "views go a");
+    assert_eq!(name(&state), "a");
 }
 
 #[test]
