@@ -45,6 +45,8 @@ pub(in crate::preview) struct State {
     /// Why no window can join or be opened.
     pub refused: Option<String>,
     report: Report,
+    /// How often the windows were asked for what they have not told.
+    asked: u64,
     pub closing: bool,
 }
 
@@ -119,6 +121,7 @@ impl Shared {
             life: None,
             refused: None,
             report: Report::default(),
+            asked: 0,
             closing: false,
         };
         Shared { state: Mutex::new(state), changed: Condvar::new(), deliver, alive: None }
@@ -169,13 +172,29 @@ impl Shared {
         waited.unwrap_or_else(PoisonError::into_inner).0
     }
 
-    /// Waits until all windows have answered a question, but not longer than this, and tells how many have not.
+    /// Asks the windows for what they have not told yet; returns the number of the question.
+    pub fn asks(&self) -> u64 {
+        let mut nth = 0;
+        self.change(|state| {
+            state.asked += 1;
+            nth = state.asked;
+            state.say(None, FromEditor::Ask(nth));
+        });
+        nth
+    }
+
+    /// Waits until all windows have answered a question, but not longer than this, and tells how many have not. Nothing is told
+    /// of a question after which another was asked.
     pub fn answers(&self, nth: u64, most: Duration) {
         let owes = |peer: &&Peer| peer.answered < nth;
-        let state = self.wait(most, |state| state.closing || !state.peers.values().any(|peer| owes(&peer)));
+        let is_over = |state: &State| state.closing || state.asked > nth;
+        let state = self.wait(most, |state| is_over(state) || !state.peers.values().any(|peer| owes(&peer)));
         let silent = state.peers.values().filter(owes).count();
+        let is_latest = state.asked == nth;
         drop(state);
-        (self.deliver)(Event::Answered { silent });
+        if is_latest {
+            (self.deliver)(Event::Answered { silent });
+        }
     }
 
     /// Waits for a window to join by itself, or for the editor to close; returns whether either happened in time.

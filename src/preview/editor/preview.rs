@@ -37,8 +37,6 @@ pub struct Preview {
     door: Option<Door>,
     /// How often windows were told where to look from.
     looked: u64,
-    /// How often they were asked for what they have not told.
-    asked: u64,
 }
 
 impl Preview {
@@ -51,8 +49,7 @@ impl Preview {
     ) -> Preview {
         let shared = Arc::new(Shared::new(Latest::new(document.clone(), revision), Box::new(deliver)));
         let scene = std::path::absolute(scene).unwrap_or_else(|_| scene.to_owned());
-        let mut preview =
-            Preview { shared, scene, options: Options::default(), keeper: None, door: None, looked: 0, asked: 0 };
+        let mut preview = Preview { shared, scene, options: Options::default(), keeper: None, door: None, looked: 0 };
         if let Err(error) = preview.listen() {
             preview.shared.lock().refused = Some(error.to_string());
         }
@@ -95,10 +92,8 @@ impl Preview {
     }
 
     /// Asks the windows for what they have not told yet; [`Event::Answered`] comes when they have, or after a while.
-    pub fn ask(&mut self) {
-        self.asked += 1;
-        let (shared, nth) = (self.shared.clone(), self.asked);
-        self.say(FromEditor::Ask(nth));
+    pub fn ask(&self) {
+        let (shared, nth) = (self.shared.clone(), self.shared.asks());
         // Without a thread nobody waits.
         if thread("link answers", move || shared.answers(nth, ANSWER)).is_err() {
             self.shared.answers(nth, Duration::ZERO);
@@ -252,6 +247,16 @@ mod tests {
             std::process::exit(1);
         }
         assert!(link.updates.iter().any(|update| matches!(update, Update::Said(FromEditor::Bye(_)))));
+    }
+
+    #[test]
+    fn a_question_after_another_is_the_one_that_is_answered() {
+        let Stage { preview, events, .. } = stage();
+        let [first, second] = [(); 2].map(|()| preview.shared.asks());
+        [first, second].iter().for_each(|nth| preview.shared.answers(*nth, Duration::ZERO));
+        drop(preview);
+        let answered = events.iter().filter(|event| matches!(event, Event::Answered { .. })).count();
+        assert_eq!(answered, 1);
     }
 
     #[test]
