@@ -106,6 +106,9 @@ fn wrong_command_lines_are_told_and_leave_nothing() {
         ("field s.plica.json -o a.txt", ".svg, .png or .csv"),
         ("field s.plica.json -o a.svg --zone nose", "only left eye"),
         ("synth s.plica.json -o out --depth 12", "8"),
+        ("synth s.plica.json -o -", "-o -: this goes to files"),
+        ("demo cat -o -", "-o -: this goes to files"),
+        ("render s.plica.json --size 0x0 -o a.exr", "--size is not for OpenEXR: it has the numbers"),
     ] {
         let Output { status, stderr, .. } = run(folder.path(), line);
         let said = String::from_utf8(stderr).unwrap();

@@ -145,6 +145,8 @@ fn a_model_that_is_opened_gets_its_scene() {
     std::fs::write(from.join("script"), "get layers.square.mesh\n").unwrap();
     for there in [false, true] {
         assert_eq!(from.join("square.plica.json").exists(), there);
+        let (_, why) = plica(&from, &["edit", "square.gltf", "--read-only", "--script", "script"], there);
+        assert_eq!(why.contains("square.gltf: has no scene yet, and --read-only makes none (leave"), !there, "{why}");
         let (out, _) = plica(&from, &["edit", "square.gltf", "--script", "script"], true);
         assert!(out.contains("\"square\""), "{out}");
     }
@@ -182,7 +184,11 @@ const TOLD: &[(&[&str], &str, bool)] = &[
     (&["new", "lost.gltf"], "lost.gltf: its buffer lost.bin: there is no such file", false),
     (&["new", "a.ply"], "a.ply: is a PLY mesh, which Plica does not read (export it as .glb or .obj", false),
     (&["new", "b.STL"], "b.STL: is an STL mesh, which Plica does not read", false),
-    (&["new", "huge.obj"], "huge.obj: its coordinates reach 1e30 m, at most 1e8 m can be seen (scale it down", false),
+    (
+        &["new", "huge.obj"],
+        "huge.obj: its coordinates reach 1e30 m, and no camera sees more than 1e8 m (scale it down",
+        false,
+    ),
     (&["new", "from/far.gltf"], "../square.bin, which is not in the model's folder (give --allow-outside", false),
     (
         &["new", "from/far.gltf", "--allow-outside", "-o", "to/far.plica.json"],
@@ -208,6 +214,7 @@ const TOLD: &[(&[&str], &str, bool)] = &[
     (&["new", "flat0.obj"], "nothing of the mesh \"flat0\" is seen: none of its triangles has an area", true),
     (&["new", "from/bare.gltf"], "from/bare.gltf: its picture is not shown: gone.png: there is no such file", true),
     (&["new", "cat.obj"], "cat.obj: is a PNG picture, not a mesh (rename it if it is to be shown as a picture;", false),
+    (&["new", ""], "name a picture, a model or a clip", false),
     (&["new", "dir.obj"], "dir.obj: is a folder, not a model (name the model in it)", false),
     (&["new", "flat.obj", "./flat.obj"], "./flat.obj: is named twice (name it once", false),
     (&["new", "flatt.glb"], "flatt.glb: there is no such file (did you mean flat.obj?)", false),

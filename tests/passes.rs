@@ -122,6 +122,7 @@ fn what_is_no_pass_says_what_there_is() {
         ("--pass depth -o a.gif", "a pass is written as .exr or, to look at, .png (as -o a-%04d.exr)"),
         ("--pass depth --frames 0,1 -o a.exr", "2 frames do not fit one file"),
         ("--pass depth --gpu -o a-%d.exr", "--gpu is not for passes"),
+        ("--pass depth -o -", "-o -: this goes to files"),
         ("--pass depth -o a-%d.jpg", "a pass is written as .exr or, to look at, .png"),
     ] {
         let Output { status, stderr, .. } = run(folder.path(), &format!("render s.plica.json {line}"));
@@ -134,6 +135,8 @@ fn what_is_no_pass_says_what_there_is() {
         let said = String::from_utf8_lossy(&stderr);
         assert!(status.success() && said.contains("nothing moves in the scene"), "{line}: {said}");
     }
+    let failed = run(folder.path(), "render s.plica.json -o none/still.png");
+    assert!(!String::from_utf8_lossy(&failed.stderr).contains("nothing moves"), "{failed:?}");
     good(folder.path(), "render s.plica.json --pass normal -o n-%d.png");
     assert_eq!(
         image::open(folder.path().join("n-1.png")).unwrap().to_rgba8().get_pixel(10, 16).0,

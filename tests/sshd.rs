@@ -95,6 +95,21 @@ impl Far {
     fn paint(&self, name: &str, color: [u8; 3]) {
         image::RgbImage::from_pixel(64, 64, image::Rgb(color)).save(self.folder.path().join(name)).unwrap();
     }
+
+    /// A window here, by the line that a person would type where ssh is set up.
+    fn window(&self, display: &Display, address: &str) -> Running {
+        let window = Command::new(env!("CARGO_BIN_EXE_plica"))
+            .args(["view", address, "--remote-plica", env!("CARGO_BIN_EXE_plica")])
+            .env("PLICA_SSH", &self.ssh)
+            .env("DISPLAY", &display.name)
+            .env("XDG_CACHE_HOME", self.folder.path().join("cache"))
+            .env("XDG_RUNTIME_DIR", self.folder.path().join("here"))
+            .env_remove("WAYLAND_DISPLAY")
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .spawn();
+        Running(window.unwrap())
+    }
 }
 
 /// An editor on the remote machine, in a terminal here, through ssh.
@@ -123,6 +138,13 @@ impl Editor {
             }
         });
         Editor { child, keys: pair.master.take_writer().unwrap(), seen, _master: pair.master }
+    }
+
+    /// Where the editor says that its scene is, once it is there.
+    fn address(&self) -> String {
+        let screen = self.wait_for("plica view ssh://");
+        let (_, address) = screen.split_once("plica view ").unwrap();
+        address.split([' ', ';']).next().unwrap().to_owned()
     }
 
     fn press(&mut self, keys: &str) {
@@ -169,24 +191,10 @@ fn an_edit_on_a_server_moves_the_window_here() {
     let scene = serde_json::json!({"plica": 1, "images": {"cat": {"path": "red.png"}}, "layers": [layer]});
     std::fs::write(&far.scene, scene.to_string()).unwrap();
     let mut editor = Editor::open(&far);
-    let screen = editor.wait_for("plica view ssh://");
-    let (_, address) = screen.split_once("plica view ").unwrap();
-    let address = address.split([' ', ';']).next().unwrap();
+    let address = &editor.address();
     assert!(address.contains("@127.0.0.1") && address.ends_with("a%20scene.plica.json"), "{address}");
-    // As a person would type it where ssh is set up.
     let cache = far.folder.path().join("cache");
-    let window = Command::new(env!("CARGO_BIN_EXE_plica"))
-        .args(["view", address, "--remote-plica", env!("CARGO_BIN_EXE_plica")])
-        .env("PLICA_SSH", &far.ssh)
-        .env("DISPLAY", &display.name)
-        .env("XDG_CACHE_HOME", &cache)
-        .env("XDG_RUNTIME_DIR", far.folder.path().join("here"))
-        .env_remove("WAYLAND_DISPLAY")
-        .stdin(Stdio::null())
-        .stdout(Stdio::null())
-        .spawn()
-        .unwrap();
-    let _window = Running(window);
+    let _window = far.window(&display, address);
     let shot = far.folder.path().join("shot.png");
     until("red in the window", || middle(&display, &shot) == [200, 30, 30]);
     editor.wait_for("window: connected");
@@ -203,6 +211,33 @@ fn an_edit_on_a_server_moves_the_window_here() {
         Command::new(env!("CARGO_BIN_EXE_plica")).arg("set").arg(&far.scene).arg("images.cat.path=red.png").status();
     assert!(set.unwrap().success());
     until("red again, by the file", || middle(&display, &shot) == [200, 30, 30]);
+}
+
+#[test]
+fn the_camera_of_the_window_here_is_taken_there() {
+    let (Some(far), Some(display)) = (far(), Display::open()) else { return };
+    std::fs::write(far.folder.path().join("m.obj"), "v -2 -1 0\nv 2 -1 0\nv 0 3 0\nf 1 2 3\n").unwrap();
+    let layer = serde_json::json!({"kind": "mesh", "name": "m", "mesh": "m", "sides": "both"});
+    let scene = serde_json::json!({"plica": 1, "camera": {}, "meshes": {"m": {"path": "m.obj"}}, "layers": [layer]});
+    std::fs::write(&far.scene, scene.to_string()).unwrap();
+    let mut editor = Editor::open(&far);
+    let _window = far.window(&display, &editor.address());
+    let shot = far.folder.path().join("shot.png");
+    editor.wait_for("window: connected");
+    until("the mesh in the window", || middle(&display, &shot)[0] > 100);
+    display.tool("xdotool", &["search", "--onlyvisible", "--name", "plica", "windowfocus", "--sync"]);
+    display.tool("xdotool", &["key", "6"]);
+    editor.press(":camera take\r");
+    editor.wait_for("the window's camera is the scene's now");
+    editor.press(":w\r");
+    let camera = || {
+        let text = std::fs::read(&far.scene).unwrap();
+        serde_json::from_slice::<serde_json::Value>(&text).unwrap()["camera"].clone()
+    };
+    until("the camera in the file", || camera()["position"].is_array());
+    assert!(camera()["position"][0].as_f64().unwrap().abs() > 0.1, "{}", camera());
+    editor.press(":q\r");
+    until("the end of the editor", || editor.child.try_wait().unwrap().is_some());
 }
 
 #[test]

@@ -24,6 +24,7 @@ impl Files {
     /// # Errors
     /// A wrong command line, or a file that the guard refuses.
     pub fn new(path: &Path, numbers: &[u64], guard: &mut Guard) -> Result<Files> {
+        outputs::no_stream(path)?;
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         let kind = match extension.as_str() {
             "exr" => outputs::EXR,

@@ -137,7 +137,7 @@ fn found(folder: &Path, all: Series) -> ClipFiles {
 
 fn names(folder: &Path) -> Result<Vec<String>> {
     let entries = std::fs::read_dir(folder).map_err(|error| match error.kind() {
-        ErrorKind::NotFound => Error::at(folder.display(), "there is no such folder"),
+        ErrorKind::NotFound => Error::at(folder.display(), "there is no such folder").cure("mend the path"),
         _ => Error::at(folder.display(), error),
     })?;
     Ok(entries.flatten().filter_map(|entry| entry.file_name().into_string().ok()).collect())

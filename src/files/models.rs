@@ -1,12 +1,12 @@
 //! Models that a person names to make a scene of them: the mesh, and which other files a scene of it reads.
 
-use std::io::Read;
 use std::path::Path;
 
 use super::{Options, mesh, paths, picture};
 use crate::base::error::{Error, Result};
 use crate::base::mesh::Mesh;
 use crate::layers::parts::materials::List;
+use crate::layers::space::eye::FAR_M;
 
 /// A model, read completely. Files are named relative to its folder.
 #[derive(Debug)]
@@ -25,16 +25,11 @@ pub struct Model {
     pub notes: Vec<String>,
 }
 
-/// A model whose coordinates go further cannot be seen by any camera: positions in a scene end at 1e9 m.
-const FARTHEST_M: f64 = 1e8;
-
-/// Whether the file at `path` is to be a model, also of a kind that is not read: by its name; a `.glb` by whatever name.
+/// Whether the file at `path` is to be a model, also of a kind that is not read: by its name, or by how it begins.
 pub fn is_one(path: &Path) -> bool {
     let name = path.to_string_lossy().to_ascii_lowercase();
     let is_called = paths::kind_of(&name) == Some(List::Meshes) || mesh::is_foreign(&name);
-    let mut magic = [0; 4];
-    let read = paths::open_named(path).ok().and_then(|mut file| file.read_exact(&mut magic).ok());
-    read.is_some() && magic == *b"glTF" || is_called
+    is_called || paths::open_named(path).is_ok_and(|file| mesh::is_one(&file, &name))
 }
 
 /// Reads a model with everything that a scene of it would read. A picture that cannot be shown is left out, which a note
@@ -51,8 +46,8 @@ pub fn read(path: &Path, options: &Options) -> Result<Model> {
     let place = path.display().to_string();
     let (mesh, mut notes, _share) = mesh::decode(open()?, &place, options, &limits.budget(), &sibling)?;
     let reach = mesh.bounds().map_or(0.0, |(least, most)| least.abs().max(most.abs()).max_element());
-    if reach > FARTHEST_M {
-        let what = format!("its coordinates reach {reach:e} m, at most {FARTHEST_M:e} m can be seen");
+    if reach > FAR_M {
+        let what = format!("its coordinates reach {reach:e} m, and no camera sees more than {FAR_M:e} m");
         return Err(Error::at(&place, what).cure("scale it down where it was made, and export it again"));
     }
     let name = path.file_name().unwrap_or_default().to_string_lossy();

@@ -28,6 +28,19 @@ impl PartialEq for Kind {
     }
 }
 
+/// Refuses standard output, where files are written.
+///
+/// # Errors
+/// If a person named it.
+pub fn no_stream(path: &Path) -> Result<()> {
+    match path.as_os_str() == "-" {
+        true => Err(Error::Usage(
+            "-o -: this goes to files, not to standard output: name one (./- if it is called so)".into(),
+        )),
+        false => Ok(()),
+    }
+}
+
 /// A file that is there already.
 pub struct Existing<'a> {
     /// Its path.
@@ -171,11 +184,12 @@ impl Guard {
         self.inputs.iter().find(is).map(|input| input.what.as_str())
     }
 
-    /// Refuses a file that must not be replaced.
+    /// Refuses a file that must not be replaced, and standard output.
     ///
     /// # Errors
-    /// If it must not; the message says why.
+    /// The message says why.
     pub fn spare(&self, path: &Path) -> Result<()> {
+        no_stream(path)?;
         match self.kept(path) {
             None => Ok(()),
             Some(what) => Err(Error::at(path.display(), format!("{what}: no output may replace it"))

@@ -154,6 +154,7 @@ fn explain(place: &str, path: &Path, error: io::Error) -> Error {
         }
         io::ErrorKind::NotADirectory => Error::at(place, "is to be in a folder that is a file").cure("mend the path"),
         io::ErrorKind::PermissionDenied => Error::at(place, "may not be read").cure("change who may read it"),
+        _ if beneath::is_loop(&error) => Error::at(place, "is a link that leads back to itself").cure("mend the link"),
         _ => Error::at(place, format!("cannot be opened: {error}")),
     }
 }
@@ -249,6 +250,7 @@ mod tests {
         rustix::fs::mknodat(rustix::fs::CWD, root.join("fifo"), rustix::fs::FileType::Fifo, rustix::fs::Mode::RUSR, 0)
             .unwrap();
         symlink("away.png", root.join("nowhere.png")).unwrap();
+        symlink("loop.png", root.join("loop.png")).unwrap();
         std::fs::write(root.join("model.gltf"), "{}").unwrap();
         let outside = outer.path().join("dog.png");
         let scene = root.join("scene.plica.json");
@@ -267,6 +269,7 @@ mod tests {
             ("no.exr#layer", Some("no such file"), Some("no such file")),
             ("sub/cat.png/x.png", Some("a folder that is a file (mend"), Some("a folder that is a file (mend")),
             ("nowhere.png", Some("a link to away.png, which is not there"), Some("(mend the link)")),
+            ("loop.png", Some("leads back to itself (mend the link)"), Some("leads back to itself (mend the link)")),
             ("model.bin", Some("no such file (put it there"), Some("no such file (put it there")),
             ("sub/b.GLB#12", None, None),
             ("sub/b.GLB#x", Some("only an OpenEXR has layers"), Some("(leave #x out)")),

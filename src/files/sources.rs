@@ -84,12 +84,18 @@ mod tests {
             std::fs::copy(at("cat.png"), at(name)).unwrap();
         }
         std::fs::write(at("cow.dat"), "glTF").unwrap();
+        std::fs::write(at("cow"), "# by hand\nv 0 0 0\n").unwrap();
+        std::fs::write(at("cow.json"), r#"{"asset": {"version": "2.0"}}"#).unwrap();
+        std::fs::write(at("other.json"), "{}").unwrap();
         std::fs::write(at("cow.obj"), "v 0 0 0\n").unwrap();
         for (name, expected) in [
             ("cat.png", List::Images),
             ("cat.obj", List::Meshes),
             ("cat.mp4", List::Clips),
             ("cow.dat", List::Meshes),
+            ("cow", List::Meshes),
+            ("cow.json", List::Meshes),
+            ("other.json", List::Images),
             ("cow.obj", List::Meshes),
             ("cow.glb#0", List::Images),
             ("no.glb", List::Meshes),

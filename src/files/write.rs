@@ -40,12 +40,21 @@ pub fn write_new(path: &Path, bytes: &[u8]) -> Result<()> {
 pub fn copy_new(from: &Path, to: &Path) -> Result<()> {
     let mut bytes = Vec::new();
     paths::open_named(from)?.read_to_end(&mut bytes).map_err(|error| Error::at(from.display(), error))?;
+    if to.symlink_metadata().is_ok() && !holds(to, &bytes) {
+        let what = format!("is there already, and is not the {} that is copied there", from.display());
+        return Err(Error::at(to.display(), what).cure("rename one of the two, or make the scene where that is"));
+    }
     put_new(to, &bytes)
 }
 
 /// As [`write_new`]; an existing file with the same content is accepted.
 fn put_new(to: &Path, bytes: &[u8]) -> Result<()> {
-    if paths::read(to, bytes.len() as u64).is_ok_and(|there| there == bytes) { Ok(()) } else { write_new(to, bytes) }
+    if holds(to, bytes) { Ok(()) } else { write_new(to, bytes) }
+}
+
+/// Whether these bytes are what is in a file.
+fn holds(path: &Path, bytes: &[u8]) -> bool {
+    paths::read(path, bytes.len() as u64).is_ok_and(|there| there == bytes)
 }
 
 /// Copies a file into the folder `to` under this name, as [`copy_new`]; folders in its name are made there.

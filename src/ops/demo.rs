@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use super::Context;
 use crate::base::error::Result;
+use crate::files::outputs;
 use crate::files::profiles::{self, Profile};
 
 /// Open a built-in demo scene
@@ -28,6 +29,7 @@ impl Args {
     /// If the name is unknown or the folder cannot be written.
     pub fn unpack(&self) -> Result<PathBuf> {
         let profile = profiles::find(&self.name)?;
+        self.output.iter().try_for_each(|folder| outputs::no_stream(folder))?;
         profile.unpack(&self.output.clone().unwrap_or_else(|| profile.scratch()))
     }
 }

@@ -12,7 +12,7 @@ use crate::base::pointer::Pointer;
 use crate::base::problem::{Problem, Severity};
 use crate::files::clips::ClipFiles;
 use crate::files::materials::{self, Cache};
-use crate::files::{self, clips, disk, models, paths, sources, write};
+use crate::files::{self, clips, disk, models, outputs, paths, sources, write};
 use crate::layers::parts::materials::List;
 use crate::scene::{Document, Known, Looks, Start, address, check};
 
@@ -33,7 +33,8 @@ pub struct Args {
 
 /// Writes the scene and prints where it is.
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
-    let first = args.files.first().ok_or_else(|| Error::Usage("name a picture, a model or a clip".into()))?;
+    let first = args.files.iter().find(|file| !file.as_os_str().is_empty());
+    let first = first.ok_or_else(|| Error::Usage("name a picture, a model or a clip".into()))?;
     let path = args.output.clone().unwrap_or_else(|| beside(first));
     let (_, notes) = create(&path, &args.files, &args.reading.options()?)?;
     notes.iter().for_each(|note| context.messages.say(note));
@@ -100,6 +101,7 @@ pub fn create(path: &Path, sources: &[PathBuf], options: &files::Options) -> Res
 
 /// Refuses a place where a scene cannot be written, before anything is copied beside it.
 fn refuse_place(path: &Path) -> Result<()> {
+    outputs::no_stream(path)?;
     let folder = disk::folder_of(path);
     if !folder.is_dir() {
         return Err(Error::at(path.display(), format!("there is no folder {}", folder.display())).cure("make it first"));

@@ -185,7 +185,7 @@ fn without_camera(before: &Document, after: &Document) -> Option<String> {
     let made = before.scene().camera.is_none().then(|| after.json().get("camera")?.as_object())??;
     let stands = ["position", "target", "keys"].iter().any(|field| made.contains_key(*field));
     let told =
-        "the scene had no camera: this one stands where every camera begins (:camera fit in the editor sees all)";
+        "the scene had no camera: this one stands where every camera begins (in the editor :camera fit sees all)";
     (!stands).then(|| told.to_owned())
 }
 

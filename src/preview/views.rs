@@ -42,36 +42,33 @@ impl Steps {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Switches {
     on: BTreeSet<&'static str>,
-    /// Overlays that do not lie over the pass that is shown: those that were on when it came. Their keys bring them back.
-    hidden: BTreeSet<&'static str>,
-    is_pass: bool,
+    /// The overlays that lie over the pass that is shown, which comes bare, and go with it; `None` over the frame.
+    over: Option<BTreeSet<&'static str>>,
 }
 
 impl Default for Switches {
     fn default() -> Self {
-        Switches { on: ON_AT_FIRST.into(), hidden: BTreeSet::new(), is_pass: false }
+        Switches { on: ON_AT_FIRST.into(), over: None }
     }
 }
 
 impl Switches {
     /// Whether what a switch is for is shown.
     pub fn is_on(&self, name: &str) -> bool {
-        self.on.contains(name) && !self.hidden.contains(name)
+        match &self.over {
+            Some(over) if is_overlay(name) => over.contains(name),
+            _ => self.on.contains(name),
+        }
     }
 
-    /// Takes whether a pass is shown, which comes bare: the overlays that are on go until the frame is shown again.
+    /// Takes whether a pass is shown.
     pub fn under_pass(&mut self, is_pass: bool) {
-        if is_pass && !self.is_pass {
-            self.hidden = self.on.iter().copied().filter(|name| is_overlay(name)).collect();
-        } else if !is_pass {
-            self.hidden.clear();
-        }
-        self.is_pass = is_pass;
+        self.over = is_pass.then(|| self.over.take().unwrap_or_default());
     }
 
     /// Whether a switch was turned on to lie over the pass that is shown.
     fn is_over_pass(&self, name: &str) -> bool {
-        self.is_pass && is_overlay(name) && self.is_on(name)
+        self.over.as_ref().is_some_and(|over| over.contains(name))
     }
 
     /// Takes a command that sets a switch, or turns it over; returns it as it is sent to windows, if it is one.
@@ -91,12 +88,15 @@ impl Switches {
     pub fn set(&mut self, name: &str, wanted: Option<bool>) -> Option<bool> {
         let name = switch(name)?;
         let on = wanted.unwrap_or(!self.is_on(name));
-        if on {
-            self.on.insert(name)
-        } else {
-            self.on.remove(name)
+        let those = match &mut self.over {
+            Some(over) if is_overlay(name) => over,
+            _ => &mut self.on,
         };
-        self.hidden.remove(name);
+        if on {
+            those.insert(name)
+        } else {
+            those.remove(name)
+        };
         Some(on)
     }
 }
@@ -164,17 +164,23 @@ impl Views {
     fn changes(&self, before: &Views) -> Vec<String> {
         let rows = || KEYS.iter().filter_map(|row| switch(row.command));
         let (own, other) = (&self.switches, &before.switches);
-        let differs = |name: &&str| own.on.contains(name) != other.on.contains(name) && !own.is_over_pass(name);
-        let over = |name: &&str| own.is_over_pass(name) && !other.is_over_pass(name);
-        let pass = (self.pass != before.pass).then(|| show_pass(self.pass.as_deref()));
+        let differs = |name: &&str| own.on.contains(name) != other.on.contains(name);
+        // What lies over the frame is set without a pass, and what lies over a pass goes with it.
+        let bare = before.pass.is_some() && rows().any(|name| is_overlay(name) && differs(&name));
+        let shown = before.pass.as_ref().filter(|_| !bare);
+        let over = |name: &&str| {
+            let lies = shown.is_some() && other.is_over_pass(name);
+            self.pass.is_some() && own.is_over_pass(name) != lies
+        };
+        let bare = bare.then(|| show_pass(None));
+        let pass = (self.pass.as_ref() != shown).then(|| show_pass(self.pass.as_deref()));
         let Shown { muted, compared, sight } = &self.shown;
         let compared = (*compared != before.shown.compared).then(|| show_compared(compared.as_deref()));
         let muted = (*muted != before.shown.muted).then(|| show_muted(muted));
         let sight = (*sight != before.shown.sight).then(|| show_sight(sight.as_ref()));
         let switches = rows().filter(differs).map(|name| set(name, own.on.contains(name)));
-        // What came before the pass it would hide.
-        let over = rows().filter(over).map(|name| set(name, true));
-        switches.chain(pass).chain(over).chain(muted).chain(compared).chain(sight).collect()
+        let over = rows().filter(over).map(|name| set(name, own.is_over_pass(name)));
+        bare.into_iter().chain(switches).chain(pass).chain(over).chain(muted).chain(compared).chain(sight).collect()
     }
 
     /// Takes what is in force at the other end; returns the commands that lead there. A window that was zoomed already keeps
@@ -284,7 +290,7 @@ mod tests {
             (&["view-field", "pass depth", "view-paths"], &["view-field on", "pass depth", "view-paths on"]),
             (&["view-field", "pass depth", "view-field", "pass color"], &["view-field on"]),
             (&["pass depth", "view-grid", "pass normal:face"], &["view-grid on", "pass normal:face"]),
-            (&["pass depth", "pass color"], &[]),
+            (&["pass depth", "view-paths", "pass color"], &[]),
             (&["mute [\"/layers/0\"]", "view-grid"], &["view-grid on", "mute [\"/layers/0\"]"]),
             (&["mute [\"/layers/0\"]", "mute []"], &[]),
             (&["compare anchor", "compare style", "pass depth"], &["pass depth", "compare style"]),
@@ -345,8 +351,8 @@ mod tests {
             ("pass normal", "pass normal", &["view-grid", "view-paths"]),
             ("view-field", "view-field on", &["view-field", "view-grid", "view-paths"]),
             ("view-field", "view-field off", &["view-grid", "view-paths"]),
-            ("pass color", "pass color", &["view-grid", "view-paths"]),
-            ("view-field on", "view-field on", &["view-field", "view-grid", "view-paths"]),
+            ("pass color", "pass color", &["view-field", "view-grid"]),
+            ("view-paths on", "view-paths on", &["view-field", "view-grid", "view-paths"]),
             ("pass depth", "pass depth", &["view-grid"]),
             ("pass color", "pass color", &["view-field", "view-grid", "view-paths"]),
         ] {
@@ -360,7 +366,7 @@ mod tests {
     fn who_comes_back_is_told_what_is_new() {
         let list = ["view-field on", "zoom-in", "zoom-in", "view-grid on"].map(String::from);
         let table: [(&[&str], &[&str]); 5] = [
-            (&["pass depth"], &["view-field on", "view-grid on", "pass color"]),
+            (&["pass depth", "view-paths"], &["pass color", "view-field on", "view-grid on"]),
             (&[], &["view-field on", "view-grid on", "zoom-in", "zoom-in"]),
             (&["view-grid"], &["view-field on"]),
             (&["view-paths on"], &["view-field on", "view-paths off", "view-grid on"]),

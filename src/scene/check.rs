@@ -14,6 +14,7 @@ use crate::base::pointer::Pointer;
 use crate::base::problem::{Kind, Problem, Severity};
 use crate::layers::parts::materials::{List, Materials, Of};
 use crate::layers::parts::moment::Space;
+use crate::layers::space::camera::Camera;
 use crate::layers::technique::{Checked, Technique};
 use crate::layers::{KINDS, Layer, check as rules};
 
@@ -164,8 +165,9 @@ fn problems(scene: &Scene, over: Vec<Problem>, layers: &[Checked], rules: &Rules
     problems.extend(names(scene));
     problems.extend(paths(scene, rules));
     problems.extend(references::problems(scene));
-    if moves(scene) {
-        problems.retain(|problem| problem.kind != Kind::Still);
+    let is_still = |problem: &Problem| problem.kind == Kind::Still;
+    if problems.iter().any(is_still) && moves(scene) {
+        problems.retain(|problem| !is_still(problem));
     }
     problems.sort_by_key(|problem| std::cmp::Reverse(problem.severity));
     problems
@@ -173,7 +175,7 @@ fn problems(scene: &Scene, over: Vec<Problem>, layers: &[Checked], rules: &Rules
 
 /// Whether something in the scene changes while the time runs, as far as the document tells.
 pub fn moves(scene: &Scene) -> bool {
-    let turns = scene.camera.as_ref().is_some_and(|camera| camera.turn != 0.0 || camera.keys.len() > 1);
+    let turns = scene.camera.as_ref().is_some_and(Camera::moves);
     let in_space = |layer: &Layer| layer.technique().kind().space == Space::World;
     scene.layers.iter().any(|layer| layer.technique().moves() || turns && in_space(layer))
 }

@@ -61,7 +61,7 @@ impl Edit {
         let named = |path: &str| Pointer(Pointer(path).below("/camera")?).tokens().next();
         let ruled = |field: &String| camera.is_ruled(field);
         let field = self.0.iter().find_map(|one| named(one.path().as_str()).filter(ruled))?;
-        Some(format!("the camera's keys rule its {field}, so this is not seen (:camera key in the editor sets them)"))
+        Some(format!("the camera's keys rule its {field}, so this is not seen (in the editor :camera key sets them)"))
     }
 
     /// Merges the next edit into this one if it only replaces what this one wrote; otherwise gives it back as the

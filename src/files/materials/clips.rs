@@ -17,6 +17,7 @@ use crate::base::error::{Error, Result};
 use crate::base::picture::Picture;
 use crate::base::pointer::Pointer;
 use crate::base::problem::Problem;
+use crate::files::clips::ClipFiles;
 use crate::files::limits::within;
 use crate::files::{self, disk, mesh, paths, picture, video};
 use crate::scene::{self, Scene};
@@ -158,11 +159,14 @@ impl Sources<'_> {
         if !paths::is_missing(scene_path, path, self.options) {
             return error;
         }
-        error.cure(match before {
-            0 => format!("the clip begins with number {}: if others are there, set first", clip.first),
+        if before > 0 {
             // Only a clip that says how many there are counts on one that is not there.
-            _ => format!("lower the clip's count to {before}, or put the frame there"),
-        })
+            return error.cure(format!("lower the clip's count to {before}, or put the frame there"));
+        }
+        let there = files::clips::find(&paths::beside(scene_path, &clip.path));
+        let Ok(ClipFiles { first, files, .. }) = there else { return error };
+        let last = first + files.len().saturating_sub(1) as u64;
+        error.cure(format!("numbers {first} to {last} are there: set the clip's first to {first}"))
     }
 
     fn is_there(&self, path: &str) -> bool {

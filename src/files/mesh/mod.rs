@@ -67,6 +67,20 @@ pub(super) fn instead(start: &[u8], place: &str) -> Option<[&'static str; 2]> {
     }
 }
 
+/// Whether an open file called `place` begins as a mesh does: a `.glb` whatever it is called, others unless that is what
+/// something else is called.
+pub(super) fn is_one(file: &File, place: &str) -> bool {
+    let Ok(start) = input::start(file, place) else { return false };
+    let is_free = paths::kind_of(place).is_none();
+    let is_json = start.first() == Some(&b'{');
+    match kind(&start, place) {
+        Ok(Format::Gltf) if is_json => is_free && names(&start, "asset"),
+        Ok(Format::Gltf) => true,
+        Ok(Format::Obj) => is_free,
+        Err(_) => false,
+    }
+}
+
 /// Refuses an open file that does not begin as a mesh does; it stays where it was: at its beginning.
 ///
 /// # Errors
@@ -79,9 +93,12 @@ const SCENE: [&str; 2] = ["a Plica scene", "plica edit opens it"];
 
 /// Whether a file begins as a scene does, and not as a glTF, which is such JSON too.
 fn is_scene(start: &[u8]) -> bool {
-    let text = input::text(start).trim_ascii_start();
-    let names = |key: &str| String::from_utf8_lossy(text).contains(key);
-    text.starts_with(b"{") && names("\"plica\"") && !names("\"asset\"")
+    input::text(start).trim_ascii_start().starts_with(b"{") && names(start, "plica") && !names(start, "asset")
+}
+
+/// Whether a text that begins so names this key.
+fn names(start: &[u8], key: &str) -> bool {
+    String::from_utf8_lossy(start).contains(&format!("\"{key}\""))
 }
 
 /// Whether a file called `name`, in lower case, is a mesh or a scene of a kind that is not read.

@@ -54,7 +54,7 @@ use std::sync::Arc;
 use kurbo::{Point, Rect};
 use serde_json::Value;
 
-use self::model::PictureLayer;
+use self::model::{PictureLayer, Zone};
 use super::parts::marks::{Hit, Mark, View};
 use super::parts::materials::{List, Materials, Use};
 use super::parts::moment::{Moment, Space};
@@ -128,7 +128,7 @@ impl Technique for PictureLayer {
     }
 
     fn moves(&self) -> bool {
-        self.zones.iter().any(|zone| !zone.is_still())
+        self.zones.iter().any(Zone::moves)
     }
 
     fn check_materials(&self, materials: &Materials) -> Vec<Problem> {

@@ -1,10 +1,11 @@
 //! The picture layer and its zones as in the document. The doc comments become the help texts of forms and schema.
 
+use kurbo::{Affine, Vec2};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::anchor::Anchor;
-use super::anchors::anchors;
+use super::anchors::{anchors, given, transform};
 use super::clock::Clock;
 use super::position::Position;
 use super::{fold::Fold, interpolation::Interpolation, outline::Outline, tools::Tool};
@@ -73,6 +74,24 @@ impl Zone {
     /// Whether nothing in it can move: no tool gives a jump vector, and it shows no clip.
     pub fn is_still(&self) -> bool {
         !self.motion.iter().any(|tool| tool.facts().moves) && self.clip().is_none()
+    }
+
+    /// Whether what it shows changes while the time runs, as far as the document tells.
+    pub fn moves(&self) -> bool {
+        self.clip().is_some() || self.motion.iter().any(|tool| self.moves_by(tool)) && self.runs()
+    }
+
+    fn moves_by(&self, tool: &Tool) -> bool {
+        let leads_away = |map: Affine| map != Affine::IDENTITY;
+        let jumps = || given(tool, &self.outline).iter().any(|(_, jump)| *jump != Vec2::ZERO);
+        tool.facts().file.is_some() || transform(tool).is_some_and(leads_away) || jumps()
+    }
+
+    /// Whether its s changes.
+    fn runs(&self) -> bool {
+        const MOMENTS: u32 = 256;
+        let clock = self.clock(Wrap::Repeat);
+        (1..=MOMENTS).any(|k| clock.s(f64::from(k) / f64::from(MOMENTS)) != clock.s(0.0))
     }
 
     /// All its anchors, tools in list order.

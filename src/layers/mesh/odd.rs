@@ -5,10 +5,7 @@ use crate::base::maths::nice;
 use crate::base::mesh::Mesh;
 use crate::base::problem::Problem;
 use crate::base::text;
-use crate::layers::space::eye::NEAR_M;
-
-/// A mesh that is larger is not seen as a whole: no camera stands so far away.
-const MOST_M: f64 = 1e8;
+use crate::layers::space::eye::{FAR_M, NEAR_M};
 
 /// The largest scale of a pose.
 const MOST_SCALE: f64 = 1e6;
@@ -33,7 +30,7 @@ fn out_of_size(layer: &MeshLayer, mesh: &Mesh) -> Option<Problem> {
     let why = match size {
         0.0 => return None,
         _ if size < NEAR_M => format!("the camera sees nothing nearer than {NEAR_M} m, and this stays small"),
-        _ if size > MOST_M => format!("no camera stands so far away that it sees more than {MOST_M:e} m"),
+        _ if size > FAR_M => format!("no camera stands so far away that it sees more than {FAR_M:e} m"),
         _ => return None,
     };
     let message = format!("the mesh \"{}\" is {} m large here: {why}", layer.mesh, rough(size));

@@ -44,7 +44,7 @@ impl Why {
             Why::Within => (
                 "/sides",
                 "the camera is inside it, where only back sides are seen, which are not shown".to_owned(),
-                "make sides \"both\", or move the camera out of it, as :camera fit does in the editor",
+                "make sides \"both\", or move the camera out of it, as in the editor :camera fit does",
             ),
         }
     }

@@ -118,6 +118,11 @@ impl Camera {
         ([position, target, up], fov)
     }
 
+    /// Whether it changes while the time runs.
+    pub fn moves(&self) -> bool {
+        self.turn != 0.0 || self.keys.iter().any(|key| self.view(key.at) != self.view(0.0))
+    }
+
     /// What jumps where a timeline that repeats starts over.
     pub fn snaps(&self) -> Vec<Snap> {
         let unturned = Camera { turn: 0.0, ..self.clone() };

@@ -7,6 +7,9 @@ use crate::base::maths;
 /// The depth at which triangles are cut off in front, in meters.
 pub const NEAR_M: f64 = 0.01;
 
+/// What is larger, or reaches further, no camera sees as a whole: positions in a scene end at ten times that, in meters.
+pub const FAR_M: f64 = 1e8;
+
 /// A camera at one time, for frames of one size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Eye {

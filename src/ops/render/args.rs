@@ -8,7 +8,6 @@ use crate::export::animation::formats::{kept, table};
 use crate::export::animation::matrix::Matrix;
 use crate::export::animation::range;
 use crate::export::numbered::is_one_picture;
-use crate::ops::Context;
 use crate::ops::scene_options::SceneOptions;
 use crate::ops::writing::Replacing;
 use crate::scene::{Scene, check, compared};
@@ -73,16 +72,16 @@ const LINE: &str = "Video by a line of your own (from 720 lines on; below them s
     -colorspace bt709 -color_primaries bt709 -color_trc iec61966-2-1 -color_range tv \\
     -c:v libx264 -crf 16 out.mp4";
 
-/// The frames that are asked for; of a scene in which nothing moves its one picture, where there is room for one alone.
-pub(super) fn wanted(args: &Args, scene: &Scene, context: &mut Context) -> Result<Vec<u64>> {
+/// The frames that are asked for; of a scene in which nothing moves its one picture, where there is room for one alone, and
+/// that this is so.
+pub(super) fn wanted(args: &Args, scene: &Scene) -> Result<(Vec<u64>, Option<String>)> {
     let all = scene.timeline.frames();
     match &args.frames {
-        Some(text) => range::parse(text, all),
+        Some(text) => Ok((range::parse(text, all)?, None)),
         None if all > 1 && is_one_picture(&args.output) && !check::moves(scene) => {
-            context.messages.say("nothing moves in the scene: this is its one picture");
-            Ok(vec![0])
+            Ok((vec![0], Some("nothing moves in the scene: this is its one picture".into())))
         }
-        None => Ok((0..all).collect()),
+        None => Ok(((0..all).collect(), None)),
     }
 }
 

@@ -43,7 +43,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let begun = Instant::now();
     let read = Unloaded::read(&args.scene, &args.options, context)?;
     let timeline = read.document.scene().timeline.clone();
-    let frames = wanted(&args, read.document.scene(), context)?;
+    let (frames, still) = wanted(&args, read.document.scene())?;
     let numbered = numbered(&args, &frames);
     let written = Arc::new(AtomicU64::new(0));
     let (target, place) = target(&args, &read, &numbered, &written, context)?;
@@ -59,6 +59,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let skipped = frames.len() - todo.len();
     let show = show(&args, place, size, &frames, todo.len(), &timeline, context);
     target.ready(&show)?;
+    context.say_all(still.as_slice());
     let files = target.files();
     let what = what(&show.place, &files, &todo, skipped);
     if !todo.is_empty() {

@@ -24,7 +24,8 @@ pub fn run(args: &Args, context: &mut Context) -> Result<()> {
         (args.skip_existing, "--skip-existing"),
     ] {
         if given {
-            return Err(Error::Usage(format!("{what} is not for passes: they have the numbers of each pixel")));
+            let these = if args.pass.is_some() { "passes: they have" } else { "OpenEXR: it has" };
+            return Err(Error::Usage(format!("{what} is not for {these} the numbers of each pixel (leave it out)")));
         }
     }
     let read = Unloaded::read(&args.scene, &args.options, context)?;
@@ -32,12 +33,13 @@ pub fn run(args: &Args, context: &mut Context) -> Result<()> {
     let asked = Asked::parse(args.pass.as_deref().unwrap_or(COLOR.name), &scene);
     let asked = asked.map_err(|what| Error::Usage(format!("--pass: {what}")))?;
     context.say_all(&asked.emptiness(&scene).into_iter().chain(unsampled(args.samples, &asked)).collect::<Vec<_>>());
-    let frames = wanted(args, &scene, context)?;
+    let (frames, still) = wanted(args, &scene)?;
     let todo: Vec<Numbered> = numbered(args, &frames);
     let mut guard = args.replacing.guard(&args.scene, &scene, context);
     let files = Files::new(&args.output, &todo.iter().map(|(_, number)| *number).collect::<Vec<_>>(), &mut guard)?;
     context.say_all(&guard.notes());
     let opened = read.load(context)?;
+    context.say_all(still.as_slice());
     let size = render::frame_size(&scene, &opened.materials);
     let each_way = if *asked.pass == COLOR { args.samples } else { 1 };
     let band = size.0 * size.1;

@@ -13,13 +13,19 @@ pub enum Event {
     Status,
     /// What a window says. Its text is one line without control characters.
     Said(ToEditor),
-    /// The windows have told what they had not before the question, but for so many that are silent.
-    Answered {
-        /// How many windows did not answer in time.
-        silent: usize,
-    },
+    /// The windows have told what they had not before the question, but for those that did not in time.
+    Answered(Silent),
     /// A script asks for a change.
     Edit(Asked),
+}
+
+/// Which windows do not answer.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Silent {
+    /// Their numbers, from 1, in the order in which windows joined.
+    pub windows: Vec<usize>,
+    /// How many windows there are.
+    pub of: usize,
 }
 
 /// A change that a script asks for and waits to hear about.

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use super::events::{Asked, Event};
+use super::events::{Asked, Event, Silent};
 use super::keeper::Life;
 use super::outbox::{Latest, Outbox, Outgoing};
 use super::status::Status;
@@ -183,17 +183,18 @@ impl Shared {
         nth
     }
 
-    /// Waits until all windows have answered a question, but not longer than this, and tells how many have not. Nothing is told
+    /// Waits until all windows have answered a question, but not longer than this, and tells which have not. Nothing is told
     /// of a question after which another was asked.
     pub fn answers(&self, nth: u64, most: Duration) {
         let owes = |peer: &&Peer| peer.answered < nth;
         let is_over = |state: &State| state.closing || state.asked > nth;
         let state = self.wait(most, |state| is_over(state) || !state.peers.values().any(|peer| owes(&peer)));
-        let silent = state.peers.values().filter(owes).count();
+        let windows = state.peers.values().zip(1..).filter(|(peer, _)| owes(peer)).map(|(_, nth)| nth).collect();
+        let silent = Silent { windows, of: state.peers.len() };
         let is_latest = state.asked == nth;
         drop(state);
         if is_latest {
-            (self.deliver)(Event::Answered { silent });
+            (self.deliver)(Event::Answered(silent));
         }
     }
 

@@ -10,6 +10,6 @@ pub mod script;
 mod status;
 
 pub use display::{has_display, opens_by_itself, way_home};
-pub use events::{Asked, Event};
+pub use events::{Asked, Event, Silent};
 pub use preview::Preview;
 pub use status::Status;

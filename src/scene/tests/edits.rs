@@ -427,8 +427,8 @@ fn what_keys_of_the_camera_rule_is_told_when_it_is_set() {
         ("/camera", json!({}), None),
     ] {
         let told = Edit::set(&document, path, value).overruled(&document);
-        let expected =
-            ruled.map(|field| format!("the camera's keys rule its {field}, so this is not seen (:camera key"));
+        let expected = ruled
+            .map(|field| format!("the camera's keys rule its {field}, so this is not seen (in the editor :camera key"));
         assert_eq!(told.is_some(), expected.is_some(), "{path}: {told:?}");
         assert!(told.unwrap_or_default().starts_with(&expected.unwrap_or_default()), "{path}");
     }

@@ -15,6 +15,7 @@ use crate::layers::parts::moment::Space;
 use crate::layers::ready::Making;
 use crate::layers::space::camera::{self, Camera};
 use crate::layers::space::fit::{self, Reach, fit};
+use crate::preview::editor::Silent;
 use crate::render::{frame_size, reach};
 use crate::scene::Scene;
 use crate::tui::events::Effect;
@@ -56,12 +57,17 @@ fn camera(state: &mut State, call: &Call) -> Done {
     }
 }
 
-/// The windows have told where they look from, but for so many that have not.
-pub fn answered(state: &mut State, table: &'static Table, silent: usize) {
+/// The windows have told where they look from, but for those that are silent.
+pub fn answered(state: &mut State, table: &'static Table, silent: &Silent) {
     let Some(Asking { word, time }) = state.outside.asking.take() else { return };
     state.outside.work = None;
-    if silent > 0 {
-        return state.complain("the window does not tell where it looks from: try again once it has drawn");
+    if !silent.windows.is_empty() {
+        let numbers: Vec<String> = silent.windows.iter().map(ToString::to_string).collect();
+        let which = match silent.of {
+            1 => "the window".to_owned(),
+            of => format!("number {} of {of} windows, in the order in which they joined,", numbers.join(" and ")),
+        };
+        return state.complain(format!("{which} did not tell where it looks from: try again once it has drawn"));
     }
     if let Err(why) = of_window(state, table, (&word, time)) {
         state.complain(why);

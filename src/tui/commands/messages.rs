@@ -5,6 +5,7 @@ use crate::base::pointer::Pointer;
 use crate::base::problem::{Problem, Severity};
 use crate::scene::address;
 use crate::tui::document::choice::{Choice, Then};
+use crate::tui::state::memory::here;
 use crate::tui::state::{Mode, Pages, State};
 use crate::tui::text::plain;
 use crate::tui::text::wrap::wrapped_lines;
@@ -36,7 +37,7 @@ fn found(state: &State) -> Vec<(String, String)> {
     let told = |problem: &Problem| {
         let kind = if problem.severity == Severity::Warning { "" } else { "error: " };
         let hint = problem.hint.as_ref().map(|hint| format!(" ({hint})")).unwrap_or_default();
-        plain(&format!("{kind}{}{hint}", problem.message))
+        here(&plain(&format!("{kind}{}{hint}", problem.message)))
     };
     unseen.chain(warnings).map(|problem| (problem.path.clone(), told(problem))).collect()
 }

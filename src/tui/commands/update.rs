@@ -101,7 +101,7 @@ fn handle(state: &mut State, event: Event) {
 fn hear(state: &mut State, event: editor::Event) {
     match event {
         editor::Event::Said(ToEditor::Gesture(gesture)) => follow_window(state, gesture),
-        editor::Event::Answered { silent } => camera::answered(state, &commands::TABLE, silent),
+        editor::Event::Answered(silent) => camera::answered(state, &commands::TABLE, &silent),
         editor::Event::Edit(asked) => answer(state, asked),
         // The link answers these. The loop on a screen asks for the status after every event.
         editor::Event::Said(

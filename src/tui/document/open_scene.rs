@@ -337,7 +337,8 @@ fn beside(picture: &Path, read_only: bool, options: &files::Options) -> Result<(
         return Ok((scene, false));
     }
     if read_only {
-        return Ok((scene, false));
+        let error = Error::at(picture.display(), "has no scene yet, and --read-only makes none");
+        return Err(error.cure("leave --read-only out"));
     }
     if models::is_one(picture) {
         new::create(&scene, &[picture.to_owned()], options)?;

@@ -126,8 +126,13 @@ pub struct Message {
 impl Message {
     /// A message about what was asked for just now.
     pub fn new(text: impl Into<String>, bad: bool) -> Message {
-        Message { text: text.into(), bad, stays: false, seen: false }
+        Message { text: here(&text.into()), bad, stays: false, seen: false }
     }
+}
+
+/// What commands and checks say, without that a line is one of the editor, where it is said.
+pub fn here(text: &str) -> String {
+    text.replace("in the editor :", ":")
 }
 
 /// What `p` pastes.

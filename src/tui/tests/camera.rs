@@ -10,7 +10,7 @@ use crate::base::mesh::{Mesh, Vertex};
 use crate::base::problem::Problem;
 use crate::layers::parts::materials::Materials;
 use crate::layers::space::camera::Camera;
-use crate::preview::editor;
+use crate::preview::editor::{self, Silent};
 use crate::preview::wire::message::Gesture;
 use crate::render;
 use crate::scene::check as scene;
@@ -31,15 +31,15 @@ fn run(state: &mut State, line: &str) -> String {
     state.message.as_ref().map(|message| message.text.clone()).unwrap_or_default()
 }
 
-/// That all windows but so many have answered.
-fn answer(silent: usize) -> Event {
-    Event::Window(editor::Event::Answered { silent })
+/// That all windows have answered.
+fn answer() -> Event {
+    Event::Window(editor::Event::Answered(Silent { windows: Vec::new(), of: 1 }))
 }
 
-/// What a line says that asks the windows, of which so many are silent.
-fn asked(state: &mut State, line: &str, silent: usize) -> String {
+/// What a line says that asks the windows, of which these of so many are silent.
+fn asked(state: &mut State, line: &str, (windows, of): (&[usize], usize)) -> String {
     run(state, line);
-    update(state, answer(silent));
+    update(state, Event::Window(editor::Event::Answered(Silent { windows: windows.to_vec(), of })));
     state.message.as_ref().map(|message| message.text.clone()).unwrap_or_default()
 }
 
@@ -58,14 +58,14 @@ fn the_windows_camera_is_taken_and_what_is_lost_is_told() {
     assert!(told.starts_with("there is no window"), "{told}");
     state.outside.window = "window".into();
     update(&mut state, said(Gesture::Camera(Some(own()))));
-    let told = asked(&mut state, "camera take", 0);
+    let told = asked(&mut state, "camera take", (&[], 1));
     assert!(told.contains("without its turn"), "{told}");
     let taken = json!({ "position": [1, 2, 3], "target": [0, 0.5, 0], "fov": 50 });
     assert_eq!(camera(&state), taken);
     press(&mut state, "u");
     assert_eq!(camera(&state), json!({ "turn": 90, "fov": 30 }), "one step of undo");
     update(&mut state, said(Gesture::Camera(None)));
-    let told = asked(&mut state, "camera take", 0);
+    let told = asked(&mut state, "camera take", (&[], 1));
     assert!(told.starts_with("the window moved last shows"), "it is back at the scene's: {told}");
 }
 
@@ -78,14 +78,20 @@ fn what_the_window_has_not_told_is_waited_for() {
     assert!(matches!(effects.as_slice(), [Effect::Ask]), "{effects:?}");
     assert_eq!((camera(&state), state.outside.work.is_some()), (before.clone(), true));
     update(&mut state, said(Gesture::Camera(Some(own()))));
-    update(&mut state, answer(0));
+    update(&mut state, answer());
     assert_eq!((camera(&state)["fov"].clone(), state.outside.work.is_some()), (json!(50), false));
     press(&mut state, "u");
-    let told = asked(&mut state, "camera take", 1);
-    assert!(told.starts_with("the window does not tell where it looks from: try again"), "{told}");
+    for (silent, expected) in [
+        ((&[1][..], 1), "the window did not tell where it looks from: try again"),
+        ((&[2], 2), "number 2 of 2 windows, in the order in which they joined, did not tell"),
+        ((&[1, 3], 3), "number 1 and 3 of 3 windows"),
+    ] {
+        let told = asked(&mut state, "camera take", silent);
+        assert!(told.starts_with(expected), "{told}");
+    }
     run(&mut state, "camera take");
     press(&mut state, "Esc");
-    update(&mut state, answer(0));
+    update(&mut state, answer());
     assert_eq!((camera(&state), state.outside.work.is_some()), (before, false), "Esc ends the asking");
 }
 
@@ -99,7 +105,7 @@ fn what_is_typed_while_the_window_is_asked_comes_after_it() {
     update(&mut state, said(Gesture::Camera(Some(own()))));
     update(&mut state, Event::Line("set camera.fov=20".into()));
     assert!(update(&mut state, Event::Line("wq".into())).is_empty(), "nothing is saved before it");
-    let effects = update(&mut state, answer(0));
+    let effects = update(&mut state, answer());
     assert_eq!((camera(&state)["keys"][0]["at"].clone(), camera(&state)["fov"].clone()), (json!(0.25), json!(20)));
     assert!(matches!(effects.last(), Some(Effect::Save { leave: true, .. })), "{effects:?}");
 }
@@ -241,7 +247,7 @@ fn other_keys_show_what_they_showed() {
     state.outside.window = "window".into();
     update(&mut state, said(Gesture::Camera(Some(own()))));
     run(&mut state, "time 0.5");
-    assert_eq!(asked(&mut state, "camera key", 0), "the camera has a key at 0.5");
+    assert_eq!(asked(&mut state, "camera key", (&[], 1)), "the camera has a key at 0.5");
     assert_eq!(camera(&state)["keys"].as_array().map(Vec::len), Some(3));
     for ((places, fov), (places_before, fov_before)) in views(&state).into_iter().zip(before) {
         assert!(fov == fov_before && places.iter().zip(places_before).all(|(a, b)| a.distance(b) < 1e-6));

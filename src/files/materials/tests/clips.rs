@@ -92,7 +92,13 @@ fn what_is_wrong_names_the_frame_and_the_cure() {
     // Widths of the frames from 0 on, `None` if there is no frame; the clip besides its path; a limit; what is said.
     let none = serde_json::json!({});
     for (widths, more, limit, said) in [
-        (vec![], none.clone(), None, "falls/0000.png: there is no such file (the clip begins with number 0"),
+        (vec![], none.clone(), None, "falls/0000.png: there is no such file (put it there"),
+        (
+            vec![0, 2, 2],
+            serde_json::json!({ "first": 7 }),
+            None,
+            "falls/0007.png: there is no such file (numbers 0 to 2 are there: set the clip's first to 0)",
+        ),
         (
             vec![2, 2],
             serde_json::json!({ "count": 3 }),

@@ -24,6 +24,7 @@ pub(super) use pictures::{embedded, named, parts};
 pub(super) use source::With;
 
 use document::{Material, Primitive, TextureInfo};
+use nodes::Placed;
 use source::Source;
 
 /// The lists and the triangles of a file, what in it is not supported, and the file of its picture, relative to its own.
@@ -31,11 +32,11 @@ pub(super) fn read(bytes: &[u8], with: With) -> Result<(Builder, Vec<String>, Op
     let With { place, limits, budget, .. } = with;
     let source = Source::of(bytes, with)?;
     let nodes = nodes::nodes(&source)?;
-    let meshes: BTreeSet<usize> = nodes.iter().filter_map(|(node, _)| node.mesh).collect();
+    let meshes: BTreeSet<usize> = nodes.iter().filter_map(|placed| placed.node.mesh).collect();
     let shapes = meshes.into_iter().map(|mesh| Ok((mesh, Shape::of(&source, mesh)?)));
     let shapes = shapes.collect::<Result<BTreeMap<usize, Shape>>>()?;
     // Many nodes may show a mesh of many parts: they are counted before anything is made for each.
-    let shown = || nodes.iter().filter_map(|(node, transform)| Some((shapes.get(&node.mesh?)?, *transform)));
+    let shown = || nodes.iter().filter_map(|placed| Some((shapes.get(&placed.node.mesh?)?, placed)));
     let counts = shown().fold(Counts::default(), |sum, (shape, _)| sum.and(shape.counts));
     within(place, "has", "triangles", "triangles", counts.triangles, limits.triangles)?;
     if counts.triangles == 0 {
@@ -46,10 +47,10 @@ pub(super) fn read(bytes: &[u8], with: With) -> Result<(Builder, Vec<String>, Op
     }
     let flattened = nodes::flattened(&source, &nodes)?;
     let mut builder = Builder::new(counts, place, budget)?;
-    for (shape, transform) in shown() {
-        shape.pieces.iter().try_for_each(|piece| piece.put(&source, &transform, &mut builder))?;
+    for (shape, placed) in shown() {
+        shape.pieces.iter().try_for_each(|piece| piece.put(&source, &placed.transform, &mut builder))?;
     }
-    let skinned = nodes.iter().any(|(node, _)| node.mesh.is_some() && node.skin.is_some());
+    let skinned = nodes.iter().any(|Placed { node, .. }| node.mesh.is_some() && node.skin.is_some());
     let mut pieces = shapes.values().flat_map(|shape| &shape.pieces);
     let colored = pieces.any(|piece| piece.primitive.attributes.color_0.is_some());
     let notes = [
@@ -65,7 +66,9 @@ pub(super) fn read(bytes: &[u8], with: With) -> Result<(Builder, Vec<String>, Op
         (colored, "the colors of its vertices are not shown"),
     ];
     let notes = notes.into_iter().filter(|(told, _)| *told).map(|(_, note)| note.to_owned());
-    let notes = flattened.into_iter().chain(notes).collect();
+    let cut = shown().find_map(|(shape, placed)| Some(format!("{}: {}", placed.called(), shape.cut.as_ref()?)));
+    let of_nodes = [flattened, nodes.iter().find_map(Placed::doubled), cut].into_iter().flatten();
+    let notes = of_nodes.chain(notes).collect();
     Ok((builder, notes, pictures::first_file(&source)))
 }
 
@@ -102,6 +105,8 @@ struct Shape<'a> {
     pieces: Vec<Piece<'a>>,
     /// How much the pieces are, together.
     counts: Counts,
+    /// What is said of corners that make no whole triangle.
+    cut: Option<String>,
     /// Whether it has points or lines.
     others: bool,
     /// Whether a texture is laid otherwise than it is read.
@@ -142,6 +147,7 @@ impl<'a> Shape<'a> {
             let material = primitive.material.and_then(|material| source.document.materials.get(material));
             shape.moved |= material.and_then(Material::base_color).is_some_and(TextureInfo::is_moved);
             let piece = Piece::of(source, primitive, positions, mode)?;
+            shape.cut = shape.cut.take().or_else(|| piece.cut(mesh));
             // The limit on triangles bounds only what has some, and each node takes the time for all pieces.
             if piece.counts().triangles > 0 {
                 shape.counts = shape.counts.and(piece.counts());
@@ -172,6 +178,13 @@ impl<'a> Piece<'a> {
         let indices = primitive.indices.map(|indices| source.stored_indices(indices)).transpose()?;
         let corners = indices.map_or(count, |indices| indices.count);
         Ok(Piece { primitive, positions, mode, count, corners })
+    }
+
+    /// What is said if corners are left over once they are triangles.
+    fn cut(&self, mesh: usize) -> Option<String> {
+        let over = if matches!(self.mode, Mode::List) { self.corners % 3 } else { 0 };
+        let corners = counted(self.corners, "corner");
+        (over > 0).then(|| format!("mesh {mesh} lists triangles by {corners}: the last {over} make none"))
     }
 
     fn counts(&self) -> Counts {

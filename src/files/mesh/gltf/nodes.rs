@@ -10,8 +10,42 @@ use crate::base::problem::quoted;
 /// A matrix of this precision moves points in space: single precision is rounded to less.
 const ROUNDED: f64 = 1e-6;
 
-/// The nodes of the default scene, each before its children, and where they are.
-pub(super) fn nodes<'a>(source: &'a Source) -> Result<Vec<(&'a Node, DAffine3)>> {
+/// A node of the default scene.
+pub(super) struct Placed<'a> {
+    index: usize,
+    pub(super) node: &'a Node,
+    /// From its own coordinates to those of the scene.
+    pub(super) transform: DAffine3,
+}
+
+impl Placed<'_> {
+    /// It in words.
+    pub(super) fn called(&self) -> String {
+        called(self.index, self.node)
+    }
+
+    /// What of it the file says twice, in words.
+    pub(super) fn doubled(&self) -> Option<String> {
+        let Node { matrix, translation, rotation, scale, .. } = self.node;
+        let is_doubled = matrix.is_some() && (translation.is_some() || rotation.is_some() || scale.is_some());
+        is_doubled.then(|| {
+            format!("{} has a matrix, beside which its translation, rotation and scale are not applied", self.called())
+        })
+    }
+
+    /// Whether nothing that it shows has an area: all areas are zero where all cofactors are.
+    fn is_gone(&self) -> bool {
+        let DMat3 { x_axis: x, y_axis: y, z_axis: z } = self.transform.matrix3;
+        [x.cross(y), y.cross(z), z.cross(x)].iter().all(|area| *area == DVec3::ZERO)
+    }
+
+    fn is_flat(&self) -> bool {
+        self.transform.matrix3.determinant() == 0.0
+    }
+}
+
+/// The nodes of the default scene, each before its children.
+pub(super) fn nodes<'a>(source: &'a Source) -> Result<Vec<Placed<'a>>> {
     let all = &source.document.nodes;
     let mut ahead: Vec<(usize, DAffine3)> = Vec::new();
     let queue = |nodes: &[usize], transform, ahead: &mut Vec<_>| {
@@ -27,29 +61,26 @@ pub(super) fn nodes<'a>(source: &'a Source) -> Result<Vec<(&'a Node, DAffine3)>>
             return Err(source.wrong(format!("node {index} is in the scene twice")));
         }
         let transform = transform * own_transform(source, index, node)?;
-        found.push((node, transform));
+        found.push(Placed { index, node, transform });
         queue(&node.children, transform, &mut ahead);
     }
     Ok(found)
 }
 
-/// What is said of nodes that leave nothing of the meshes that they show.
+/// What is said of nodes that leave nothing of the meshes that they show, or no thickness.
 ///
 /// # Errors
-/// They are all of them.
-pub(super) fn flattened(source: &Source, nodes: &[(&Node, DAffine3)]) -> Result<Option<String>> {
-    let mut shown = nodes.iter().filter(|(node, _)| node.mesh.is_some()).peekable();
-    // All areas are zero where all cofactors are.
-    let is_gone = |(_, DAffine3 { matrix3: DMat3 { x_axis: x, y_axis: y, z_axis: z }, .. }): &&(&Node, DAffine3)| {
-        [x.cross(*y), y.cross(*z), z.cross(*x)].iter().all(|area| *area == DVec3::ZERO)
-    };
-    let all = shown.clone().all(|one| is_gone(&one));
-    let Some((node, _)) = shown.find(is_gone) else { return Ok(None) };
-    let index = source.document.nodes.iter().position(|other| std::ptr::eq(other, *node)).unwrap_or_default();
-    let what = format!("{} is scaled to nothing, itself or by one that it is in", called(index, node));
-    match all {
-        true => Err(Error::at(source.with.place, what).cure("mend its scale, and export it again")),
-        false => Ok(Some(what)),
+/// They leave nothing of any.
+pub(super) fn flattened(source: &Source, nodes: &[Placed]) -> Result<Option<String>> {
+    let shown = || nodes.iter().filter(|placed| placed.node.mesh.is_some());
+    let told = |placed: &Placed, how: &str| format!("{} is {how}, itself or by one that it is in", placed.called());
+    match shown().find(|placed| placed.is_gone()) {
+        Some(gone) if shown().all(Placed::is_gone) => {
+            let what = told(gone, "scaled to nothing");
+            Err(Error::at(source.with.place, what).cure("mend its scale, and export it again"))
+        }
+        Some(gone) => Ok(Some(told(gone, "scaled to nothing"))),
+        None => Ok(shown().find(|placed| placed.is_flat()).map(|flat| told(flat, "made flat"))),
     }
 }
 

@@ -44,8 +44,8 @@ fn shown(source: &Source) -> Result<Vec<usize>> {
 /// The parts of the meshes of the default scene, each once, in the order in which its nodes show them.
 pub(super) fn primitives<'a>(source: &'a Source) -> Result<Vec<&'a Primitive>> {
     let (mut meshes, mut found) = (BTreeSet::new(), Vec::new());
-    for (node, _) in nodes(source)? {
-        let Some(mesh) = node.mesh.filter(|&mesh| meshes.insert(mesh)) else { continue };
+    for placed in nodes(source)? {
+        let Some(mesh) = placed.node.mesh.filter(|&mesh| meshes.insert(mesh)) else { continue };
         found.extend(&source.get(&source.document.meshes, mesh, "mesh")?.primitives);
     }
     Ok(found)

@@ -66,7 +66,7 @@ impl<'a> Source<'a> {
         let (json, binary) =
             if bytes.starts_with(b"glTF") { chunks(bytes, with.place)? } else { (input::text(bytes), None) };
         let share = with.budget.take(most_bytes(json), with.place)?;
-        let document: Document = serde_json::from_slice(json).map_err(|error| explain(with.place, &error))?;
+        let document: Document = serde_json::from_slice(json).map_err(|error| explain(with.place, &error, json))?;
         let buffers = document.buffers.iter().map(|_| OnceCell::new()).collect();
         let source = Source { document, with, binary, buffers, _share: share };
         source.check_version()?;
@@ -228,14 +228,49 @@ fn most_bytes(json: &[u8]) -> u64 {
     json.iter().map(cost).sum::<u64>()
 }
 
-fn explain(place: &str, error: &serde_json::Error) -> Error {
+fn explain(place: &str, error: &serde_json::Error, json: &[u8]) -> Error {
     if error.is_eof() {
         return cut_short(place);
     }
     let (line, column) = (error.line(), error.column());
     let message = error.to_string();
     let what = message.strip_suffix(&format!(" at line {line} column {column}")).unwrap_or(&message);
-    Error::at(place, format!("is not a glTF file: line {line}, column {column}: {what}")).cure("export it again")
+    let before =
+        json.split_inclusive(|byte| *byte == b'\n').take(line.saturating_sub(1)).map(<[u8]>::len).sum::<usize>();
+    let at = path_to(json, before + column);
+    let what = format!("is not a glTF file: line {line}, column {column}{at}: {what}");
+    Error::at(place, what).cure("export it again")
+}
+
+/// The keys and indices, in parentheses, that lead to what ends at a byte of a JSON text that is right until there.
+fn path_to(json: &[u8], end: usize) -> String {
+    let mut path: Vec<String> = Vec::new();
+    let mut bytes = json.iter().take(end);
+    let mut text = Vec::new();
+    while let Some(byte) = bytes.next() {
+        match byte {
+            b'"' => {
+                let mut escaped = false;
+                let goes_on = |byte: &&u8| {
+                    let escapes = **byte == b'\\' && !escaped;
+                    std::mem::replace(&mut escaped, escapes) || **byte != b'"'
+                };
+                text = bytes.by_ref().take_while(goes_on).copied().collect();
+            }
+            b':' => {
+                path.iter_mut().next_back().into_iter().for_each(|key| *key = String::from_utf8_lossy(&text).into())
+            }
+            b'{' => path.push(String::new()),
+            b'[' => path.push("0".into()),
+            b'}' | b']' => drop(path.pop()),
+            b',' => path.iter_mut().next_back().into_iter().for_each(|step| {
+                *step = step.parse().map_or_else(|_| String::new(), |index: usize| (index + 1).to_string());
+            }),
+            _ => {}
+        }
+    }
+    let path: Vec<String> = path.into_iter().filter(|step| !step.is_empty()).collect();
+    if path.is_empty() { String::new() } else { format!(" ({})", path.join(".")) }
 }
 
 /// The bytes of the `data:` address of a part that is called so, as `buffer 0`.

@@ -105,17 +105,18 @@ fn the_default_scene_is_read_in_the_order_of_its_nodes() {
 
 #[test]
 fn triangles_come_as_lists_strips_and_fans() {
-    for (mode, indices, expected) in [
-        (json!(null), json!(3), &[0, 1, 2, 0, 2, 3][..]),
-        (json!(4), json!(null), &[0, 1, 2]),
-        (json!(5), json!(null), &[0, 1, 2, 1, 3, 2]),
-        (json!(6), json!(null), &[1, 2, 0, 2, 3, 0]),
+    let cut = "node 0: mesh 0 lists triangles by 4 corners: the last 1 make none";
+    for (mode, indices, expected, told) in [
+        (json!(null), json!(3), &[0, 1, 2, 0, 2, 3][..], &[][..]),
+        (json!(4), json!(null), &[0, 1, 2], &[cut]),
+        (json!(5), json!(null), &[0, 1, 2, 1, 3, 2], &[]),
+        (json!(6), json!(null), &[1, 2, 0, 2, 3, 0], &[]),
     ] {
         let (mesh, notes) =
             changed(&[("/meshes/0/primitives/0/mode", mode), ("/meshes/0/primitives/0/indices", indices)]).unwrap();
         let corners = [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
         assert_eq!(positions(&mesh), expected.iter().map(|&at: &usize| corners[at]).collect::<Vec<_>>());
-        assert_eq!(notes, [""; 0]);
+        assert_eq!(notes, told);
     }
     let lines = json!({ "attributes": { "POSITION": 0 }, "mode": 1 });
     let posed = json!({ "attributes": { "POSITION": 0 }, "targets": [{ "POSITION": 0 }] });
@@ -137,6 +138,15 @@ fn triangles_come_as_lists_strips_and_fans() {
     let more = [("/nodes/-", gone.clone()), ("/scenes/0/nodes", json!([0, 1]))];
     let told = "node 1 \"hat\" is scaled to nothing, itself or by one that it is in";
     assert_eq!(changed(&more).unwrap().1, [told, "2 of 4 triangles have no area and are never seen"]);
+    for (change, told) in [
+        (("/nodes/0/scale", json!([1, 1, 0])), "node 0 is made flat, itself or by one that it is in"),
+        (("/accessors/3/count", json!(5)), "node 0: mesh 0 lists triangles by 5 corners: the last 2 make none"),
+    ] {
+        assert_eq!(changed(&[change]).unwrap().1, [told]);
+    }
+    let both = json!({ "mesh": 0, "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1], "scale": [2, 2, 2] });
+    let told = "node 0 has a matrix, beside which its translation, rotation and scale are not applied";
+    assert_eq!(changed(&[("/nodes/0", both)]).unwrap().1, [told]);
     let (mesh, notes) = changed(&[add(lines), add(posed), add(bare), ("/nodes/0/skin", json!(0))]).unwrap();
     assert_eq!((mesh.triangles.len(), mesh.without_uv), (3, Some(2)));
     assert_eq!(

@@ -187,7 +187,9 @@ fn what_is_not_read_is_told_by_its_name() {
         (
             "/nodes/0/mesh",
             json!(-1),
-            format!("is not a glTF file: line 1, column 103: invalid value: integer `-1`, expected usize {AGAIN}"),
+            format!(
+                "is not a glTF file: line 1, column 103 (nodes.0.mesh): invalid value: integer `-1`, expected usize {AGAIN}"
+            ),
         ),
     ]);
     changed(&[("/extensionsRequired", json!(["KHR_mesh_quantization", "KHR_materials_unlit"]))]).unwrap();
