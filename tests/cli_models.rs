@@ -214,7 +214,7 @@ const TOLD: &[(&[&str], &str, bool)] = &[
     (&["new", "flat0.obj"], "nothing of the mesh \"flat0\" is seen: none of its triangles has an area", true),
     (&["new", "from/bare.gltf"], "from/bare.gltf: its picture is not shown: gone.png: there is no such file", true),
     (&["new", "cat.obj"], "cat.obj: is a PNG picture, not a mesh (rename it if it is to be shown as a picture;", false),
-    (&["new", ""], "name a picture, a model or a clip", false),
+    (&["new", ""], "a word of the line is empty, as \"\" is", false),
     (&["new", "dir.obj"], "dir.obj: is a folder, not a model (name the model in it)", false),
     (&["new", "flat.obj", "./flat.obj"], "./flat.obj: is named twice (name it once", false),
     (&["new", "flatt.glb"], "flatt.glb: there is no such file (did you mean flat.obj?)", false),

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use clap::error::{ContextKind, ContextValue};
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, Parser};
 
 use crate::base::error::{Error, Result};
@@ -48,14 +48,18 @@ fn quoting(error: &Error) -> String {
     split.fold(error.to_string(), |text, word| text.replace(&word, &text::line(&word)))
 }
 
-/// The error; where a file stands in the place of a subcommand, with what opens it.
+/// The error; where a file stands in the place of a subcommand, with what opens it, and where an empty word stands in the
+/// place of a value, with that.
 fn with_tip(mut error: clap::Error) -> clap::Error {
     let word = match error.get(ContextKind::InvalidSubcommand) {
-        Some(ContextValue::String(word)) => word.clone(),
-        _ => return error,
+        Some(ContextValue::String(word)) => Some(word.clone()),
+        _ => None,
     };
-    if cfg!(feature = "tui") && Path::new(&word).is_file() {
-        let tip = format!("there is a file of that name; 'plica edit {}' opens it", demo::quoted(&word));
+    let is_empty = error.kind() == ErrorKind::InvalidValue && std::env::args_os().any(|word| word.is_empty());
+    let file = word.filter(|word| cfg!(feature = "tui") && Path::new(word).is_file());
+    let file = file.map(|word| format!("there is a file of that name; 'plica edit {}' opens it", demo::quoted(&word)));
+    let empty = || "a word of the line is empty, as \"\" is, or a variable that is not set".to_owned();
+    if let Some(tip) = file.or_else(|| is_empty.then(empty)) {
         error.remove(ContextKind::SuggestedSubcommand);
         error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
     }

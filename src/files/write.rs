@@ -41,7 +41,7 @@ pub fn copy_new(from: &Path, to: &Path) -> Result<()> {
     let mut bytes = Vec::new();
     paths::open_named(from)?.read_to_end(&mut bytes).map_err(|error| Error::at(from.display(), error))?;
     if to.symlink_metadata().is_ok() && !holds(to, &bytes) {
-        let what = format!("is there already, and is not the {} that is copied there", from.display());
+        let what = format!("is there already, and is another file than {}, which is copied there", from.display());
         return Err(Error::at(to.display(), what).cure("rename one of the two, or make the scene where that is"));
     }
     put_new(to, &bytes)

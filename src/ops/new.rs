@@ -33,8 +33,7 @@ pub struct Args {
 
 /// Writes the scene and prints where it is.
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
-    let first = args.files.iter().find(|file| !file.as_os_str().is_empty());
-    let first = first.ok_or_else(|| Error::Usage("name a picture, a model or a clip".into()))?;
+    let first = args.files.first().ok_or_else(|| Error::Usage("name a picture, a model or a clip".into()))?;
     let path = args.output.clone().unwrap_or_else(|| beside(first));
     let (_, notes) = create(&path, &args.files, &args.reading.options()?)?;
     notes.iter().for_each(|note| context.messages.say(note));

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::{Context, scene_options::SceneOptions};
 use crate::base::error::{Error, Result};
-use crate::base::problem::Problem;
+use crate::base::problem::{Problem, Severity};
 use crate::files::{self, materials};
 use crate::layers::parts::materials::Materials;
 use crate::render::{self, Synth, bands::Bands};
@@ -89,6 +89,20 @@ impl Opened {
             })
         };
         ways.into_iter().map(opened).collect()
+    }
+
+    /// From now on what there is no memory for is left out where that is told ([`Opened::tell_lacks`]).
+    pub fn leaving_out(mut self) -> Opened {
+        self.materials.leaves_out = true;
+        self
+    }
+
+    /// Says what a synthesis leaves out.
+    pub fn tell_lacks(&self, synth: &Synth, context: &mut Context) {
+        for lack in synth.lacks() {
+            let lack = address::of_problem(&self.document, &Problem { severity: Severity::Warning, ..lack });
+            context.messages.say(&format!("{}: {lack}", self.path.display()));
+        }
     }
 
     /// Prepares the scene for rendering frames at any time.

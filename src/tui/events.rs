@@ -62,6 +62,8 @@ pub enum Event {
     End,
     /// A stop signal (as from Ctrl-Z) was sent from outside.
     Stop,
+    /// The process goes on after it was stopped.
+    Continue,
     /// A click, in cells of the terminal.
     Click(u16, u16),
 }
@@ -160,6 +162,8 @@ pub enum Effect {
     Redraw,
     /// Stop the process as Ctrl-Z does in a shell.
     Suspend,
+    /// Set up the screen again, whatever a shell has written on it since the process was stopped.
+    Return,
     /// Leave.
     Quit,
 }

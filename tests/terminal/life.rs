@@ -98,6 +98,26 @@ fn ctrl_z_gives_the_terminal_back_and_fg_draws_anew() {
 }
 
 #[test]
+fn what_a_shell_writes_while_the_editor_is_stopped_is_gone_when_it_goes_on() {
+    let folder = folder();
+    let mut editor = Editor::open(folder.path(), &["photo.png"]);
+    editor.wait_for("made");
+    editor.press("/speed\r+");
+    editor.wait_for("  *");
+    editor.signal("STOP");
+    editor.wait_until_stopped();
+    let terminal = format!("/proc/{}/fd/0", editor.child.process_id().unwrap());
+    assert!(std::process::Command::new("stty").args(["-F", &terminal, "sane"]).status().unwrap().success());
+    editor.seen.lock().unwrap().process(b"\x1b[?1049l$ ls");
+    editor.signal("CONT");
+    editor.wait_for("  *");
+    editor.wait_without("$ ls");
+    editor.press("+:wq\r");
+    assert_eq!((editor.end(), saved_speed(&folder)), (0, json!(3)));
+    editor.assert_restored();
+}
+
+#[test]
 fn a_storm_of_sizes_loses_no_key() {
     let folder = folder();
     let mut editor = Editor::open(folder.path(), &["photo.png"]);

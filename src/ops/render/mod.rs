@@ -47,7 +47,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let numbered = numbered(&args, &frames);
     let written = Arc::new(AtomicU64::new(0));
     let (target, place) = target(&args, &read, &numbered, &written, context)?;
-    let opened = read.load(context)?;
+    let opened = read.load(context)?.leaving_out();
     let ways = match &args.compare {
         Some(by) => opened.compared(by)?,
         None => vec![opened],
@@ -59,7 +59,6 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let skipped = frames.len() - todo.len();
     let show = show(&args, place, size, &frames, todo.len(), &timeline, context);
     target.ready(&show)?;
-    context.say_all(still.as_slice());
     let files = target.files();
     let what = what(&show.place, &files, &todo, skipped);
     if !todo.is_empty() {
@@ -73,6 +72,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
         outcome?;
     }
     let bytes = written.load(Ordering::Relaxed) + outputs::size(files.iter().map(Cleared::path));
+    context.say_all(still.as_slice());
     context.done(&what, bytes, begun);
     Ok(())
 }
@@ -93,6 +93,8 @@ fn write(
     context.say_all(&by_cpu.map(|why| format!("--gpu: the CPU draws this: {why}")).into_iter().collect::<Vec<_>>());
     let first = &renderers[0];
     let Opened { document, materials, .. } = first.opened;
+    let pictures = first.bands.as_ref().map(Bands::pictures);
+    first.samples.first().or(pictures.as_ref()).into_iter().for_each(|synth| first.opened.tell_lacks(synth, context));
     let _encoding = materials.budget.take(target.memory(&show), &show.place)?;
     if todo.len() > 1 {
         for warning in seams::warnings(document.scene(), materials, || first.samples.first()) {

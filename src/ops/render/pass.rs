@@ -38,13 +38,13 @@ pub fn run(args: &Args, context: &mut Context) -> Result<()> {
     let mut guard = args.replacing.guard(&args.scene, &scene, context);
     let files = Files::new(&args.output, &todo.iter().map(|(_, number)| *number).collect::<Vec<_>>(), &mut guard)?;
     context.say_all(&guard.notes());
-    let opened = read.load(context)?;
-    context.say_all(still.as_slice());
+    let opened = read.load(context)?.leaving_out();
     let size = render::frame_size(&scene, &opened.materials);
     let each_way = if *asked.pass == COLOR { args.samples } else { 1 };
     let band = size.0 * size.1;
     let _share = opened.materials.budget.take(2 * frame_bytes(size, size, each_way as usize, band), "frames")?;
     let samples = made(&opened, each_way, *asked.pass != COLOR && files.are_numbers())?;
+    samples.first().into_iter().for_each(|synth| opened.tell_lacks(synth, context));
     let strokes = samples.first().map_or(0, |synth| render::stroke_bytes(synth, each_way));
     let _strokes = opened.materials.budget.take(strokes, "frames")?;
     let samples: Vec<Synth> = samples.iter().map(|synth| asked.only(synth)).collect();
@@ -61,6 +61,7 @@ pub fn run(args: &Args, context: &mut Context) -> Result<()> {
         files.write(number, &picture, *asked.pass == COLOR, shown)?;
     }
     context.messages.step("frame", todo.len() as u64, todo.len() as u64);
+    context.say_all(still.as_slice());
     let what = match todo.len() {
         1 => args.output.display().to_string(),
         n => format!("{}, {n} frames", args.output.display()),

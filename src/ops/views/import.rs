@@ -195,6 +195,9 @@ fn frame_camera(document: &Document, shot: &Shot, corners: &[DVec3], place: &DAf
     shots::camera(document, shot, place, distance, height_px)
 }
 
+/// The least share of z in the mean up of cameras whose world has z up.
+const UPRIGHT: f64 = 0.8;
+
 /// What the cameras mean: how many see the mesh, and whether they stand on their heads.
 fn meaning(shots: &[Shot], corners: &[DVec3], place: &DAffine3, layer: &str) -> Vec<String> {
     let seeing = shots.iter().filter(|shot| corners.iter().any(|corner| sees(shot, *corner))).count();
@@ -203,6 +206,11 @@ fn meaning(shots: &[Shot], corners: &[DVec3], place: &DAffine3, layer: &str) -> 
     let up = up.normalize_or_zero();
     if seeing == 0 {
         told.push("none sees it: --axes z-up turns cameras of a world whose z points up".into());
+    } else if up.z > UPRIGHT {
+        told.push(format!(
+            "z is up in their world: --axes z-up turns them to a mesh that stands, pose.rotate [-90, 0, 0] of {} both",
+            quoted(layer)
+        ));
     } else if up.y < -0.2 {
         told.push(format!(
             "their pictures stand on their heads: pose.rotate [180, 0, 0] of {} would turn it",
@@ -219,4 +227,33 @@ fn sees(shot: &Shot, point: DVec3) -> bool {
     let [x, y] = shot.center_px.unwrap_or([width / 2.0, height / 2.0]);
     let (x, y) = (x + shot.focal_px[0] * seen.x / seen.z, y + shot.focal_px[1] * seen.y / seen.z);
     seen.z > 0.0 && (0.0..width).contains(&x) && (0.0..height).contains(&y)
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DMat3;
+
+    use super::*;
+
+    #[test]
+    fn what_is_up_for_the_cameras_is_told_where_it_is_not_y() {
+        // From the rows of a turn: x right, y down, z forward.
+        let shot = |down: DVec3, forward: DVec3| Shot {
+            turn: DMat3::from_cols(down.cross(forward), down, forward).transpose(),
+            shift: DVec3::new(0.0, 0.0, 4.0),
+            focal_px: [100.0; 2],
+            center_px: None,
+            size_px: Some([100, 100]),
+        };
+        for (down, forward, told) in [
+            (DVec3::NEG_Y, DVec3::NEG_Z, None),
+            (DVec3::Y, DVec3::NEG_Z, Some("stand on their heads: pose.rotate [180, 0, 0] of \"m\"")),
+            (DVec3::NEG_Z, DVec3::Y, Some("z is up in their world: --axes z-up turns them")),
+        ] {
+            let found = meaning(&[shot(down, forward)], &[DVec3::ZERO], &DAffine3::IDENTITY, "m");
+            assert_eq!(found[0], "1 of 1 cameras see the mesh");
+            assert_eq!(found.len(), 1 + usize::from(told.is_some()), "{found:?}");
+            assert!(told.is_none_or(|told| found[1].contains(told)), "{found:?}");
+        }
+    }
 }

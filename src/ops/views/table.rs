@@ -36,6 +36,8 @@ pub struct Listing {
 
 /// A view that comes back so many dB worse than the median is probably not seen from where its camera says.
 const OFF_DB: f64 = 6.0;
+/// One whose share in what is seen from its camera is so much of the usual one is covered by others.
+const COVERED: f64 = 0.5;
 
 /// Prints the table or the lines.
 pub fn run(args: &Listing, context: &mut Context) -> Result<()> {
@@ -114,13 +116,39 @@ fn words(row: &Value, width: usize) -> String {
     line.trim_end().to_owned()
 }
 
-/// What is told of views that come back much worse than the others.
+/// What is told of views that come back much worse than the others: by their cameras, or as others are seen in their place.
 fn off(rows: &[Value]) -> impl Iterator<Item = String> {
-    let mut all: Vec<f64> = rows.iter().filter_map(|row| row["psnr"].as_f64()).collect();
-    let median = statistics::median(&mut all).unwrap_or_default();
+    let median = |key: &str| {
+        let mut all: Vec<f64> = rows.iter().filter_map(|row| row[key].as_f64()).collect();
+        statistics::median(&mut all).unwrap_or_default()
+    };
+    let (median, usual) = (median("psnr"), median("share"));
     rows.iter().filter_map(move |row| {
         let psnr = row["psnr"].as_f64().filter(|psnr| *psnr < median - OFF_DB)?;
-        let view = row["view"].as_str().unwrap_or_default();
-        Some(format!("{view}: comes back with {psnr:.1} dB, the median is {median:.1}: its camera is probably off"))
+        let (view, share) = (row["view"].as_str().unwrap_or_default(), row["share"].as_f64().unwrap_or_default());
+        let why = match share < usual * COVERED {
+            true => format!("from its camera {:.0} % of what is seen are other views", 100.0 * (1.0 - share)),
+            false => "its camera is probably off".to_owned(),
+        };
+        Some(format!("{view}: comes back with {psnr:.1} dB, the median is {median:.1}: {why}"))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_comes_back_badly_is_off_or_covered() {
+        let row = |view: &str, psnr: f64, share: f64| json!({ "view": view, "psnr": psnr, "share": share });
+        let rows = [row("a", 38.0, 0.9), row("b", 37.0, 0.8), row("off", 20.0, 0.85), row("under", 20.0, 0.1)];
+        let told: Vec<String> = off(&[&rows[..], &[row("c", 36.0, 0.9)]].concat()).collect();
+        assert_eq!(
+            told,
+            [
+                "off: comes back with 20.0 dB, the median is 36.0: its camera is probably off",
+                "under: comes back with 20.0 dB, the median is 36.0: from its camera 90 % of what is seen are other views",
+            ]
+        );
+    }
 }

@@ -94,6 +94,7 @@ fn handle(state: &mut State, event: Event) {
         Event::FilesChanged(files) => conflicts::follow(state, &files),
         Event::End => state.ask(Effect::Quit),
         Event::Stop => state.ask(Effect::Suspend),
+        Event::Continue => state.ask(Effect::Return),
     }
 }
 

@@ -6,6 +6,7 @@ use serde_json::json;
 
 use super::camera::eye;
 use super::command::{Call, Command, Done, command};
+use super::items::go_to;
 use super::profiles::shown;
 use crate::base::pointer::Pointer;
 use crate::base::problem::{nearest, quoted};
@@ -15,22 +16,22 @@ use crate::layers::space::fit;
 use crate::ops::views::paint::{self, Standpoint};
 use crate::scene::shots;
 use crate::tui::events::Effect;
-use crate::tui::state::State;
+use crate::tui::state::{State, painting};
 use crate::tui::text::numbers::rounded;
 use crate::tui::text::plain;
 use crate::tui::text::said::words;
 
 pub const COMMANDS: &[Command] = &[command(
     "views",
-    "[add|go|take|guide|import|balance ...]",
-    "Paint over what is seen of a mesh (add NAME), look from a view (go NAME), move it here (take NAME); as on the shell",
+    "[add|go|take|next|previous|guide|import|balance ...]",
+    "Paint over what is seen of a mesh (add NAME), look from a view (go NAME), move it here (take NAME), select the next; as on the shell",
     views,
 )
 // What is painted over is what is seen.
 .awaiting(|_, text| text.starts_with("add "))];
 
 /// What is done with views; the last four on the command line too.
-const WORDS: [&str; 6] = ["go", "take", "add", "guide", "import", "balance"];
+const WORDS: [&str; 8] = ["go", "take", "next", "previous", "add", "guide", "import", "balance"];
 const OF_SHELL: &[&str] = &["add", "guide", "import", "balance"];
 
 fn views(state: &mut State, call: &Call) -> Done {
@@ -45,8 +46,10 @@ fn views(state: &mut State, call: &Call) -> Done {
             add(state, name, kind.copied(), size.copied())
         }
         ["go", name @ ..] if name.len() <= 1 => go(state, name.first().copied()),
+        [way @ ("next" | "previous")] => step(state, if *way == "next" { 1 } else { -1 }),
         ["guide"] => {
             let (_, name) = view(state, layer(state)?, None)?;
+            state.say(format!("drawing the guide of {}", plain(&name)));
             outside(state, &["guide", &name]);
             Ok(())
         }
@@ -124,7 +127,23 @@ fn side(text: &str) -> Result<usize, String> {
     side.ok_or_else(|| format!("a picture has 1 to {MOST_SIDE} pixels a side, not {text}"))
 }
 
-/// The view called so, or that of the selected row, or the only one: its index, and its name.
+/// Selects the view that is so many after the one that is painted on, and so it is painted on; after the last comes the first.
+fn step(state: &mut State, by: i64) -> Done {
+    let (layer, index, _) = painting::current(state).ok_or("no view lies on a mesh yet: :views add NAME lays one")?;
+    let technique = state.document().scene().layers[layer].technique();
+    let lying = technique.lying().unwrap_or_default();
+    let next = (index as i64 + by).rem_euclid(lying.len() as i64) as usize;
+    let list = technique.lay(&[]).map_or("", |laying| laying.list);
+    let (at, name) = (format!("/layers/{layer}{list}/{next}"), plain(lying[next].name));
+    let told = format!("{name}, {} of {}", next + 1, lying.len());
+    state.picture.laid = Some((layer, next));
+    go_to(state, &at);
+    painting::follow(state);
+    state.say(told);
+    Ok(())
+}
+
+/// The view called so, or that of the selected row, or the one that is painted on: its index, and its name.
 fn view(state: &State, layer: usize, name: Option<&str>) -> Result<(usize, String), String> {
     let technique = state.document().scene().layers[layer].technique();
     let lying = technique.lying().unwrap_or_default();
@@ -137,8 +156,11 @@ fn view(state: &State, layer: usize, name: Option<&str>) -> Result<(usize, Strin
             format!("there is no view {} ({hint})", quoted(name))
         })?,
         (None, Some(index)) => index,
-        (None, None) if lying.len() == 1 => 0,
-        (None, None) => return Err("which view: name it, or go to its row".into()),
+        (None, None) => match state.picture.laid.filter(|(on, _)| *on == layer) {
+            Some((_, index)) => index,
+            None if lying.len() == 1 => 0,
+            None => return Err("which view: name it, or go to its row".into()),
+        },
     };
     let name = lying.get(index).ok_or("there is no such view")?.name.to_owned();
     Ok((index, name))

@@ -262,6 +262,8 @@ const OWN: &[KeyRow] = &[
     row(SELECTING, "s", "sphere blend", "Add a blend point here, which looks where the view looks"),
     row(PAINTING, "Tab", "layout next", "From results to the painting, to select, and round"),
     row(PAINTING, "Shift-Tab", "layout previous", "The same the other way"),
+    row(PAINTING, "Ctrl-n", "views next", "Paint on the next view"),
+    row(PAINTING, "Ctrl-p", "views previous", "Paint on the one before"),
     row(PAINTING, "z )", "layout more", "More of the picture that is painted on, less of what its camera sees"),
     row(PAINTING, "z (", "layout less", "Less of it"),
     row(PAINTING, "Alt-Left", "layout orbit -15 0", "In select, go round the mesh to the left"),

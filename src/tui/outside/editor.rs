@@ -65,6 +65,8 @@ pub struct Editor {
     pub(super) awaited: Option<Arc<Scene>>,
     /// Whether the editor is about to end.
     pub(super) leaving: bool,
+    /// Whether the screen is set up again after a stop of its own, of which the end is still to be told.
+    pub(super) returned: bool,
     /// Whether a signal has ended it.
     pub(super) interrupted: bool,
     /// When the drawing began that the terminal has not fully read yet.
@@ -124,6 +126,7 @@ impl Editor {
             throttle: Throttle::default(),
             awaited: None,
             leaving: false,
+            returned: false,
             interrupted: false,
             drawn: None,
         };

@@ -80,6 +80,8 @@ impl Editor {
             Effect::Ask => self.preview.ask(),
             Effect::Redraw => self.screen.iter_mut().for_each(|screen| drop(terminal::forget(screen))),
             Effect::Suspend => self.suspend(),
+            Effect::Return if std::mem::take(&mut self.returned) => {}
+            Effect::Return => self.set_up(),
             Effect::Quit => self.leaving = true,
         }
     }
@@ -224,6 +226,16 @@ impl Editor {
         self.drain();
         terminal::restore();
         signals::default_action(Signal::Stop);
+        self.set_up();
+        self.returned = true;
+    }
+
+    /// Sets up the screen again.
+    fn set_up(&mut self) {
+        if self.screen.is_none() {
+            return;
+        }
+        terminal::restore();
         match terminal::enter() {
             Ok(screen) => self.screen = Some(screen),
             Err(_) => self.leaving = true,

@@ -76,7 +76,11 @@ fn end_on_signals(sender: mpsc::Sender<Event>, lines: bool) -> Result<signals::R
             let _ = terminal::size().map(|(width, height)| sender.send(Event::Resize(width, height)));
             Answer::Done
         }
-        Signal::Continue => Answer::Pass,
+        Signal::Continue => {
+            // As above.
+            let _ = sender.send(Event::Continue);
+            Answer::Done
+        }
     };
     signals::handle(handler).map_err(|error| Error::at("signals", error))
 }

@@ -9,12 +9,16 @@ pub use super::picture::{ALL, Painting, Sees};
 use crate::base::geometry::farther;
 use crate::base::maths::{cos, sin};
 use crate::base::pointer::Pointer;
+use crate::base::statistics::median;
 use crate::layers::parts::shots::{Put, SeenFrom};
 use crate::layers::space::camera::Camera;
 use crate::layers::space::fit::{Ball, fit};
 use crate::render::sight::Sight;
 use crate::tui::events::Effect;
 use crate::tui::graphics::viewport::Viewport;
+
+/// A camera that is so many times as far away as is usual stands far behind the others.
+const FAR: f64 = 3.0;
 
 /// How near to the poles one goes, in degrees.
 const HIGHEST: f64 = 85.0;
@@ -59,10 +63,10 @@ pub fn sight(state: &State) -> Option<Sight> {
     }
 }
 
-/// A camera that sees the mesh and the cameras of all pictures on it, from where the scene's camera stands, turned by so many
-/// degrees to the right and up.
+/// A camera that sees the mesh and the cameras of the pictures on it, from where the scene's camera stands, turned by so many
+/// degrees to the right and up. One that stands far behind the others would make all small: it is seen while it is selected.
 fn camera(state: &State, (right, lift): (f64, f64)) -> Option<Camera> {
-    let (layer, ..) = current(state)?;
+    let (layer, index, _) = current(state)?;
     let (scene, time) = (state.document().scene(), state.play.time);
     let technique = scene.layers.get(layer)?.technique();
     let place = technique.model_to_world(time)?;
@@ -70,12 +74,16 @@ fn camera(state: &State, (right, lift): (f64, f64)) -> Option<Camera> {
         SeenFrom::Shot(shot) => shot.position(),
         SeenFrom::Standing { position, .. } => position,
     };
-    let cameras = technique.lying()?.into_iter().filter_map(|lying| lying.from).map(at);
-    let cameras: Vec<DVec3> = cameras.map(|at| place.transform_point3(at)).collect();
+    let cameras = technique.lying()?.into_iter().enumerate().filter_map(|(i, lying)| Some((i, at(lying.from?))));
+    let mut cameras: Vec<(usize, DVec3)> = cameras.map(|(i, at)| (i, place.transform_point3(at))).collect();
     let synth = state.picture.synth.as_ref()?;
     let made = synth.layers.get(layer)?;
+    let mesh = Ball::around(&|ways| made.reach(time, ways))?;
+    let usual = median(&mut cameras.iter().map(|(_, at)| at.distance(mesh.middle)).collect::<Vec<_>>());
+    let most = FAR * usual.unwrap_or_default();
+    cameras.retain(|(i, at)| *i == index || at.distance(mesh.middle) <= most);
     let reach = |ways: &[DVec3]| {
-        let of_cameras = cameras.iter().map(|at| ways.iter().map(|way| way.dot(*at)).collect::<Vec<f64>>());
+        let of_cameras = cameras.iter().map(|(_, at)| ways.iter().map(|way| way.dot(*at)).collect::<Vec<f64>>());
         of_cameras.chain(made.reach(time, ways)).reduce(farther)
     };
     let ball = Ball::around(&reach)?;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use kurbo::Point;
 use serde_json::json;
 
-use super::support::{at, press, said};
+use super::support::{at, press, said, said_last};
 use crate::base::maths::tan;
 use crate::files::materials::{self, Cache};
 use crate::layers::parts::marks::Shape;
@@ -85,7 +85,7 @@ fn what_is_seen_is_painted_over_from_where_it_is_seen() {
         ("views tak", "views takes no \"tak\" (did you mean \"take\"?)"),
         (
             "views frob",
-            "views takes no \"frob\" (there are \"go\", \"take\", \"add\", \"guide\", \"import\", \"balance\")",
+            "views takes no \"frob\" (there are \"go\", \"take\", \"next\", \"previous\", \"add\", \"guide\", \"import\", \"balance\")",
         ),
     ] {
         assert_eq!(run(&mut state, line).0, told, "{line}");
@@ -185,6 +185,33 @@ fn the_view_that_was_selected_last_is_painted_on() {
     state.outside.window = "window".into();
     run(&mut state, "views go a");
     assert_eq!(name(&state), "a");
+}
+
+#[test]
+fn views_are_gone_through_by_a_key_and_a_far_one_makes_none_small() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut state = opened(folder.path());
+    run(&mut state, "views add a both 8x6");
+    run(&mut state, "views add b both 8x6");
+    show(&mut state);
+    press(&mut state, ": \"layout select\" Enter Ctrl-n");
+    let now = |state: &State| (painting::current(state).unwrap().1, said_last(state).1);
+    assert_eq!((now(&state).0, now(&state).1.ends_with(", 1 of 7")), (0, true), "after the last comes the first");
+    press(&mut state, "Ctrl-p");
+    assert_eq!(now(&state), (6, "b, 7 of 7".to_owned()));
+    assert!(
+        matches!(press(&mut state, ": \"views guide\" Enter").first(), Some(Effect::Run(words)) if words[2] == "b")
+    );
+    press(&mut state, "Ctrl-p");
+    let distance = |state: &State| match painting::sight(state) {
+        Some(Sight::From(camera)) => glam::DVec3::from(camera.position).length(),
+        other => panic!("{other:?}"),
+    };
+    let near = distance(&state);
+    run(&mut state, "set layers.wall.surface.views.b.camera.position=[0, 0, 900]");
+    assert!(distance(&state) < 2.0 * near, "{} {near}", distance(&state));
+    press(&mut state, "Ctrl-n");
+    assert!(distance(&state) > 100.0, "it is seen while it is selected");
 }
 
 #[test]

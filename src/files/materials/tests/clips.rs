@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use serde_json::json;
+
 use super::*;
 use crate::files::Limits;
 
@@ -10,7 +12,7 @@ fn start(clip: serde_json::Value) -> (tempfile::TempDir, PathBuf, Scene) {
     let folder = tempfile::tempdir().unwrap();
     std::fs::create_dir(folder.path().join("falls")).unwrap();
     let path = folder.path().join("scene.plica.json");
-    let scene = serde_json::json!({ "plica": 1, "clips": { "falls": clip } });
+    let scene = json!({ "plica": 1, "clips": { "falls": clip } });
     (folder, path, serde_json::from_value(scene).unwrap())
 }
 
@@ -32,10 +34,10 @@ fn look(path: &Path, scene: &Scene, options: &Options, cache: &mut Cache) -> (Op
 fn frames_follow_one_another_from_the_first() {
     // Frames 2, 3, 4, 6 are there; whether it is told that later ones are.
     for (clip, count, fps, gap) in [
-        (serde_json::json!({ "path": "falls/%04d.png", "first": 2 }), 3, 25.0, true),
-        (serde_json::json!({ "path": "falls/%04d.png", "first": 3, "fps": 12.5 }), 2, 12.5, true),
-        (serde_json::json!({ "path": "falls/%04d.png", "first": 2, "count": 2 }), 2, 25.0, false),
-        (serde_json::json!({ "path": "falls/000%d.png", "first": 6 }), 1, 25.0, false),
+        (json!({ "path": "falls/%04d.png", "first": 2 }), 3, 25.0, true),
+        (json!({ "path": "falls/%04d.png", "first": 3, "fps": 12.5 }), 2, 12.5, true),
+        (json!({ "path": "falls/%04d.png", "first": 2, "count": 2 }), 2, 25.0, false),
+        (json!({ "path": "falls/000%d.png", "first": 6 }), 1, 25.0, false),
     ] {
         let (folder, path, scene) = start(clip.clone());
         [2, 3, 4, 6].into_iter().for_each(|number| frame(folder.path(), number, 2));
@@ -59,7 +61,7 @@ fn frames_follow_one_another_from_the_first() {
 
 #[test]
 fn only_frames_that_change_are_read_again() {
-    let (folder, path, scene) = start(serde_json::json!({ "path": "falls/%04d.png" }));
+    let (folder, path, scene) = start(json!({ "path": "falls/%04d.png" }));
     (0..3).for_each(|number| frame(folder.path(), number, 2));
     let (options, mut cache) = (Options::default(), Cache::default());
     let mut again = || {
@@ -90,52 +92,37 @@ fn only_frames_that_change_are_read_again() {
 #[test]
 fn what_is_wrong_names_the_frame_and_the_cure() {
     // Widths of the frames from 0 on, `None` if there is no frame; the clip besides its path; a limit; what is said.
-    let none = serde_json::json!({});
+    let none = json!({});
     for (widths, more, limit, said) in [
         (vec![], none.clone(), None, "falls/0000.png: there is no such file (put it there"),
         (
             vec![0, 2, 2],
-            serde_json::json!({ "first": 7 }),
+            json!({ "first": 7 }),
             None,
             "falls/0007.png: there is no such file (numbers 0 to 2 are there: set the clip's first to 0)",
         ),
         (
             vec![2, 2],
-            serde_json::json!({ "count": 3 }),
+            json!({ "count": 3 }),
             None,
             "falls/0002.png: there is no such file (lower the clip's count to 2, or put the frame there)",
         ),
         (vec![2, 2, 3], none.clone(), None, "falls/0002.png: is 3 x 1, and the clip's first frame 2 x 1 (make all"),
         (vec![2, 0, 2], none.clone(), None, "falls/0001.png: "),
-        (
-            vec![2, 2],
-            serde_json::json!({ "path": "falls" }),
-            None,
-            "falls: is a folder, not a file (write falls/%04d.png)",
-        ),
+        (vec![2, 2], json!({ "path": "falls" }), None, "falls: is a folder, not a file (write falls/%04d.png)"),
+        (vec![2], json!({ "path": "falls/" }), None, "falls/: is a folder, not a file (write falls/%04d.png)"),
         (
             vec![2],
-            serde_json::json!({ "path": "falls/" }),
-            None,
-            "falls/: is a folder, not a file (write falls/%04d.png)",
-        ),
-        (
-            vec![2],
-            serde_json::json!({ "path": "falls/0000.png" }),
+            json!({ "path": "falls/0000.png" }),
             None,
             "falls/0000.png: is a PNG picture, not a video (write falls/%04d.png)",
         ),
         (vec![2, 2, 2], none.clone(), Some("frames=2"), "falls/%04d.png: it has 3 frames, at most 2"),
         (vec![2, 2, 2], none.clone(), Some("clip=5"), "falls/%04d.png: its frames have 6 pixels together, at most 5"),
         (vec![2, 2, 2], none, Some("pixels=1"), "falls/0000.png: "),
-        (
-            vec![900, 900],
-            serde_json::json!({}),
-            Some("memory=1500"),
-            "falls/%04d.png: needs 900 bytes of memory besides",
-        ),
+        (vec![900, 900], json!({}), Some("memory=1500"), "falls/%04d.png: needs 900 bytes of memory besides"),
     ] {
-        let mut clip = serde_json::json!({ "path": "falls/%04d.png" });
+        let mut clip = json!({ "path": "falls/%04d.png" });
         clip.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
         let (folder, path, scene) = start(clip);
         for (number, width) in (0..).zip(widths) {
@@ -154,7 +141,7 @@ fn what_is_wrong_names_the_frame_and_the_cure() {
 
 #[test]
 fn a_link_that_leads_out_is_refused() {
-    let (folder, path, scene) = start(serde_json::json!({ "path": "falls/%04d.png" }));
+    let (folder, path, scene) = start(json!({ "path": "falls/%04d.png" }));
     let outside = tempfile::tempdir().unwrap();
     paint(outside.path(), "out.png", 2);
     std::os::unix::fs::symlink(outside.path().join("out.png"), folder.path().join("falls/0000.png")).unwrap();
@@ -166,7 +153,7 @@ fn a_link_that_leads_out_is_refused() {
 
 #[test]
 fn loading_ends_when_it_is_cancelled() {
-    let (folder, path, scene) = start(serde_json::json!({ "path": "falls/%04d.png" }));
+    let (folder, path, scene) = start(json!({ "path": "falls/%04d.png" }));
     (0..3).for_each(|number| frame(folder.path(), number, 2));
     let mut cache = Cache::until(Arc::new(true.into()));
     let (clip, problems) = look(&path, &scene, &Options::default(), &mut cache);
@@ -175,7 +162,7 @@ fn loading_ends_when_it_is_cancelled() {
 
 #[test]
 fn reading_tells_how_far_it_is() {
-    let (folder, path, scene) = start(serde_json::json!({ "path": "falls/%04d.png" }));
+    let (folder, path, scene) = start(json!({ "path": "falls/%04d.png" }));
     (0..5).for_each(|number| frame(folder.path(), number, 2));
     let told = Arc::new(std::sync::Mutex::new(Vec::new()));
     let heard = told.clone();
@@ -190,7 +177,7 @@ fn reading_tells_how_far_it_is() {
 
 #[test]
 fn copies_of_frames_make_a_clip_once_all_are_here() {
-    let (folder, _, scene) = start(serde_json::json!({ "path": "falls/%04d.png" }));
+    let (folder, _, scene) = start(json!({ "path": "falls/%04d.png" }));
     (0..3).for_each(|number| frame(folder.path(), number, 2));
     let here =
         |number: u32| (format!("falls/{number:04}.png"), Ok(folder.path().join(format!("falls/{number:04}.png"))));
@@ -217,8 +204,8 @@ fn real_clips_are_read() {
     for folder in std::fs::read_dir(&data).unwrap().map(|entry| entry.unwrap().path()) {
         let count = std::fs::read_dir(&folder).unwrap().count();
         let name = folder.file_name().unwrap().to_str().unwrap();
-        let clip = serde_json::json!({ "path": format!("{name}/%04d.jpg") });
-        let scene = serde_json::from_value(serde_json::json!({ "plica": 1, "clips": { "falls": clip } })).unwrap();
+        let clip = json!({ "path": format!("{name}/%04d.jpg") });
+        let scene = serde_json::from_value(json!({ "plica": 1, "clips": { "falls": clip } })).unwrap();
         let (clip, problems) = look(&data.join("s.plica.json"), &scene, &Options::default(), &mut Cache::default());
         assert_eq!((clip.unwrap().frames.len(), problems), (count, vec![]), "{name}");
     }

@@ -119,7 +119,7 @@ fn triangles_come_as_lists_strips_and_fans() {
         assert_eq!(notes, told);
     }
     let lines = json!({ "attributes": { "POSITION": 0 }, "mode": 1 });
-    let posed = json!({ "attributes": { "POSITION": 0 }, "targets": [{ "POSITION": 0 }] });
+    let posed = json!({ "attributes": { "POSITION": 0 }, "indices": 3, "targets": [{ "POSITION": 0 }] });
     let bare = json!({ "attributes": { "NORMAL": 1 } });
     let add = |primitive| ("/meshes/0/primitives/-", primitive);
     let laid = |info: Value| json!([{ "pbrMetallicRoughness": { "baseColorTexture": info } }]);
@@ -132,7 +132,7 @@ fn triangles_come_as_lists_strips_and_fans() {
         let of = ("/meshes/0/primitives/0/material", json!(0));
         assert_eq!(changed(&[("/materials", laid(info)), of]).unwrap().1.len(), told);
     }
-    let colored = json!({ "attributes": { "POSITION": 0, "COLOR_0": 0 } });
+    let colored = json!({ "attributes": { "POSITION": 0, "COLOR_0": 0 }, "indices": 3 });
     assert_eq!(changed(&[add(colored)]).unwrap().1, ["the colors of its vertices are not shown"]);
     let gone = json!({ "name": "hat", "mesh": 0, "scale": [1, 0, 0] });
     let more = [("/nodes/-", gone.clone()), ("/scenes/0/nodes", json!([0, 1]))];
@@ -148,7 +148,7 @@ fn triangles_come_as_lists_strips_and_fans() {
     let told = "node 0 has a matrix, beside which its translation, rotation and scale are not applied";
     assert_eq!(changed(&[("/nodes/0", both)]).unwrap().1, [told]);
     let (mesh, notes) = changed(&[add(lines), add(posed), add(bare), ("/nodes/0/skin", json!(0))]).unwrap();
-    assert_eq!((mesh.triangles.len(), mesh.without_uv), (3, Some(2)));
+    assert_eq!((mesh.triangles.len(), mesh.without_uv), (4, Some(2)));
     assert_eq!(
         notes,
         [

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::again::Again;
+use super::again::Again as Looking;
 use super::looked::Filled;
 use super::sample::Reader;
 use crate::base::maths::ln;
@@ -11,30 +11,44 @@ use crate::base::pixels::{Rgba, encode};
 /// The least cosine between the normal and the way to the camera.
 const LEAST_NORMAL: f64 = 0.2;
 
-/// The peak signal-to-noise ratio of each active view, in dB; `None` if nothing of it is seen, infinite if there is no
-/// difference at all.
-pub fn compare(filled: Filled) -> Vec<Option<f64>> {
+/// How a view comes back.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Again {
+    /// The peak signal-to-noise ratio in dB, infinite if there is no difference at all.
+    pub psnr: f64,
+    /// The share that it has itself in what is seen from its camera, from 0 to 1.
+    pub share: f64,
+}
+
+/// How each active view comes back; `None` if nothing of it is seen.
+pub fn compare(filled: Filled) -> Vec<Option<Again>> {
     (0..filled.0.wanted.views.len()).map(|view| one(filled, view)).collect()
 }
 
-fn one((map, arrays): Filled, view: usize) -> Option<f64> {
+fn one((map, arrays): Filled, view: usize) -> Option<Again> {
     let own = &map.wanted.views[view];
-    let (again, (width, height), pixels) = (Again::new(map, own), own.camera.size_px, own.paint.pixels());
+    let (looking, (width, height), pixels) = (Looking::new(map, own), own.camera.size_px, own.paint.pixels());
     let rows = (0..height).into_par_iter().map(|y| {
-        let (mut sum, mut count, mut reader) = (0_u64, 0_u64, Reader::new(map, arrays));
-        again.row(y, |x, normal, spot| {
+        let (mut sum, mut count, mut share, mut reader) = (0_u64, 0_u64, 0.0, Reader::new(map, arrays));
+        looking.row(y, |x, normal, spot| {
             let picture = pixels[y * width + x];
             if picture[3] < 1.0 || normal < LEAST_NORMAL {
                 return;
             }
             let [r, g, b] = reader.at(spot, None).over.map(|light| light as f32);
             sum += squares([r, g, b, 1.0], picture);
-            count += 3;
+            count += 1;
+            reader.everyone(spot, |one, has| share += if one == view { has } else { 0.0 });
         });
-        (sum, count)
+        (sum, count, share)
     });
-    let (sum, count) = rows.reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
-    (count > 0).then(|| 10.0 / std::f64::consts::LN_10 * ln(255.0 * 255.0 * count as f64 / sum as f64))
+    // Row by row, so that the sum of shares does not depend on the threads.
+    let rows: Vec<(u64, u64, f64)> = rows.collect();
+    let (sum, count, share) = rows.iter().fold((0, 0, 0.0), |sum, row| (sum.0 + row.0, sum.1 + row.1, sum.2 + row.2));
+    (count > 0).then(|| Again {
+        psnr: 10.0 / std::f64::consts::LN_10 * ln(255.0 * 255.0 * 3.0 * count as f64 / sum as f64),
+        share: share / count as f64,
+    })
 }
 
 /// The squares of the differences between codes.

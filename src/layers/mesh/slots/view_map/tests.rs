@@ -144,7 +144,10 @@ fn the_surface_is_half_a_square_of_the_atlas_in_charts() {
 fn a_lone_view_is_shown_as_it_is_from_its_own_camera() {
     let map = filled(Wanted { levels: None, ..wanted(ball(), vec![view([0.0, 1.0, 4.0], 0)]) }, None);
     let near = compare((&map, None))[0].unwrap();
-    assert!(near >= 36.0, "{near} dB");
+    assert!(near.psnr >= 36.0 && near.share > 0.99, "{near:?}");
+    let twice = wanted(ball(), vec![view([0.0, 1.0, 4.0], 0), view([0.0, 1.0, 4.0], 1)]);
+    let twice = compare((&filled(twice, None), None))[1].unwrap();
+    assert!(twice.share < 0.6, "half of what is seen there is the other's: {twice:?}");
     let report = super::report::map((&map, None));
     assert_eq!((report.charts, report.levels), (1, map.cells.layers.len()));
     let told: usize = map.origins[0].iter().flatten().sum();
@@ -309,6 +312,22 @@ fn arrays_hold_what_is_seen_in_their_directions() {
     }
     assert!(seen > 10, "{seen}");
     assert!(super::arrays::Arrays::new(&map, side, &|| true).is_none());
+}
+
+#[test]
+fn a_camera_of_a_world_whose_z_is_up_is_told_as_one() {
+    let mut high = (*squares(&[0.0])).clone();
+    high.vertices.iter_mut().for_each(|vertex| vertex.position.y += 9.0);
+    let looking = |back: DVec3, at: DVec3, up: DVec3| {
+        let camera = Camera::of_eye(&Eye::new([at + back, at, up], 40.0, (40, 40)), (40, 40));
+        let map = filled(wanted(Arc::new(high.clone()), vec![View { camera, ..view([0.0, 0.0, 4.0], 0) }]), None);
+        let own = serde_json::json!({ "views": [{ "name": "0", "image": "a", "camera": {} }] });
+        let found = super::warnings::warnings(&serde_json::from_value(own).unwrap(), &map);
+        found[0].hint.clone().unwrap()
+    };
+    let lying = looking(DVec3::NEG_Y * 4.0, DVec3::Z * 9.0, DVec3::Z);
+    assert!(lying.contains("--axes z-up"), "{lying}");
+    assert!(looking(DVec3::Z * 4.0, DVec3::ZERO, DVec3::Y).contains("y up"));
 }
 
 #[test]

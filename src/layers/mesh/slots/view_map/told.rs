@@ -25,8 +25,11 @@ pub fn told(filled: Filled, compare: bool) -> Vec<Value> {
             "cells": cells.collect::<Vec<_>>(),
         });
         if compare {
-            told["psnr"] =
-                again.get(i).copied().flatten().filter(|psnr| psnr.is_finite()).map_or(Value::Null, number::json);
+            let again = again.get(i).copied().flatten();
+            let finite =
+                |number: Option<f64>| number.filter(|number| number.is_finite()).map_or(Value::Null, number::json);
+            told["psnr"] = finite(again.map(|again| again.psnr));
+            told["share"] = finite(again.map(|again| number::rounded(again.share, 4)));
         }
         told
     });

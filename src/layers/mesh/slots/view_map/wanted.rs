@@ -67,7 +67,12 @@ fn misfits_of(own: &model::View, materials: &Materials) -> Vec<Problem> {
     let beside = [("/mask", &own.mask), ("/changed", &own.changed)].into_iter().filter_map(|(path, name)| {
         let ([width, height], [own_width, own_height]) = (picture, name.as_ref().and_then(size)?);
         let message = || format!("{own_width}x{own_height}, the picture is {width}x{height}");
-        let problem = || Problem::error(path, message()).hint("make it as large as the picture");
+        // A guide is what the picture was painted over: of the two, the picture was saved last.
+        let cure = match path {
+            "/changed" => format!("save the picture with {own_width}x{own_height} pixels, as its guide has"),
+            _ => "make it as large as the picture".to_owned(),
+        };
+        let problem = || Problem::error(path, message()).hint(cure);
         ([width, height] != [own_width, own_height]).then(problem)
     });
     shape.into_iter().chain(beside).collect()

@@ -24,6 +24,9 @@ const MOST_COVERED: f64 = 0.01;
 /// How many times larger the cells of the 95th percentile may be on the surface than those of the 5th.
 const MOST_STRETCHED: f64 = 8.0;
 
+/// Less than so many degrees past the middle of a mesh a camera is meant for it.
+const NEARLY: f64 = 20.0;
+
 /// The share of all directions in which there is the inside of a mesh for a point that is in it.
 const MOST_ROUND: f64 = 0.75;
 
@@ -79,10 +82,16 @@ fn of_view(found: &OfView, map: &Map) -> Option<Problem> {
     let Some(depth) = found.depth else {
         let middle = map.wanted.mesh.bounds().map_or(DVec3::ZERO, |(low, high)| (low + high) / 2.0);
         let camera = &found.view.camera;
-        let toward = (middle - camera.position).normalize_or_zero();
-        let past = acos((-camera.axes()[2].dot(toward)).clamp(-1.0, 1.0)).to_degrees();
-        let problem = Problem::warning("", format!("sees nothing of the mesh (it looks {past:.0} degrees past it)"));
-        return Some(problem.hint("the camera is in the model's coordinates, y up"));
+        let past = |turned: fn(DVec3) -> DVec3| {
+            let toward = (middle - turned(camera.position)).normalize_or_zero();
+            acos((-turned(camera.axes()[2]).dot(toward)).clamp(-1.0, 1.0)).to_degrees()
+        };
+        let (looks, upright) = (past(|at| at), past(|at| DVec3::new(at.x, at.z, -at.y)));
+        let problem = Problem::warning("", format!("sees nothing of the mesh (it looks {looks:.0} degrees past it)"));
+        return Some(problem.hint(match upright < NEARLY && looks > NEARLY {
+            true => "its world has z up, as it seems: plica views import --axes z-up turns cameras",
+            false => "the camera is in the model's coordinates, y up",
+        }));
     };
     if found.cells.iter().flatten().all(|cells| *cells == 0) {
         let problem = Problem::warning("", "nothing of its picture counts");
