@@ -230,7 +230,7 @@ fn new_copies_pictures_of_other_folders() {
     let refused = plica(folder.path(), &["new", "cat.png", "-o", "scenes/c.plica.json"]);
     assert_eq!((refused.status, std::fs::read(scenes.join("cat.png")).unwrap()), (1, b"other".to_vec()));
     let told =
-        "cat.png: is there already, and is another file than cat.png, which is copied there (rename one of the two";
+        "cat.png: is there already, and is another file than ./cat.png, which is copied there (rename one of the two";
     assert!(refused.messages.contains(told), "{refused:?}");
     assert!(!scenes.join("c.plica.json").exists());
     std::fs::write(folder.path().join("no.png"), "no picture").unwrap();
