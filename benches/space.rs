@@ -1,5 +1,5 @@
 //! How long a frame of a mesh takes on the CPU, from the pose to linear light: depth, normals and shading. The camera
-//! looks at a wavy ball that fills most of the frame. `cargo bench --bench space`
+//! looks at a wavy ball that fills most of the frame; and how long a view map of it takes. `cargo bench --bench space`
 
 use std::sync::Arc;
 
@@ -7,9 +7,11 @@ use divan::Bencher;
 use glam::{DVec2, DVec3};
 use plica::base::maths::{TAU, cos, sin};
 use plica::base::mesh::{Mesh, Vertex};
+use plica::base::picture::Picture;
 use plica::layers::parts::materials::Materials;
 use plica::render::{Synth, cpu, passes::Asked, synth};
 use plica::scene::Scene;
+use rayon::ThreadPoolBuilder;
 
 fn main() {
     divan::main();
@@ -37,6 +39,26 @@ fn pass(bencher: Bencher, name: &str) {
     let synth = scene(44_000, SIZE);
     let asked = Asked::parse(name, &Scene::default()).expect("there is such a pass");
     bencher.bench(|| asked.picture(&synth, 0.3));
+}
+
+/// Filling a view map of 25,800 triangles by one picture of 800x600, the finest layer 512 cells wide, on one thread: at most 0.3 s.
+#[divan::bench(args = [1], sample_count = 10)]
+fn filling(bencher: Bencher, threads: usize) {
+    let json = r#"{"plica": 1, "camera": {}, "images": {"seen": {"path": "seen.png"}}, "meshes": {"ball": {"path": "ball.obj"}},
+        "layers": [{"kind": "mesh", "name": "ball", "mesh": "ball", "surface": {"kind": "view-map", "cells": 32, "levels": 5, "views": [
+            {"name": "seen", "image": "seen", "camera": {"position": [0, 0, 3], "target": [0, 0, 0]}}]}}]}"#;
+    let scene: Scene = serde_json::from_str(json).expect("the scene is written as the document wants it");
+    let (width, height) = (800, 600);
+    let cell = |i: usize| [(i % 251) as f32 / 251.0, (i % 127) as f32 / 127.0, 0.5, 1.0];
+    let seen = Picture::from_cells(width, height, (0..width * height).map(cell).collect());
+    let materials = Materials {
+        meshes: [("ball".to_owned(), Arc::new(ball(25_800)))].into(),
+        pictures: [("seen".to_owned(), Arc::new(seen))].into(),
+        ..Materials::default()
+    };
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started");
+    bencher
+        .bench_local(|| pool.install(|| synth(&scene, &materials, None).expect("the files are among the materials")));
 }
 
 fn scene(triangles: usize, (width, height): (usize, usize)) -> Synth {

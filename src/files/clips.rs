@@ -43,7 +43,9 @@ fn is_video(name: &str) -> bool {
 /// Whether a person means a clip by this path.
 pub fn is_one(path: &Path) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    path.is_dir() || is_video(&name) || is_called(&name) && !picture::is_one(path)
+    // What stands for a number otherwise than is known is told as that.
+    let is_pattern = Pattern::of(&name).map_or(name.contains("%0"), |pattern| pattern.is_numbered());
+    path.is_dir() || is_video(&name) || is_pattern && !picture::is_one(path)
 }
 
 /// What a clip is called in a scene, by the name of its files: what is before the number, or the name of their folder.
@@ -205,6 +207,7 @@ mod tests {
         }
         assert!(!is_one(&folder.path().join("none/cat.png")) && is_one(&folder.path().join("none")));
         assert!(is_one(Path::new("x.MP4")) && is_one(Path::new("%d.png")) && !is_one(Path::new("x.png")));
+        assert!(is_one(Path::new("x%04x.png")) && !is_one(Path::new("100%.png")));
     }
 
     #[test]

@@ -224,7 +224,7 @@ mod tests {
             (json!({ "foam": { "look": { "tint": [{ "at": 0, "color": "blau" }] } } }), ".foam.look.tint.0.color: "),
             (
                 json!({ "lines": 20000, "rate": 1000 }),
-                ".lines: 14.0 million sprites at once, and 2 million is the most (lower lines, rate or life)",
+                ".lines: 13998575 sprites at once, at most 2000000 are allowed (lower lines, rate or life)",
             ),
         ]
     }

@@ -4,7 +4,6 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::Scene;
-use crate::base::pointer::Pointer;
 use crate::base::problem::{Problem, nearest, quoted};
 use crate::layers::parts::materials::{List, Of};
 
@@ -65,21 +64,7 @@ pub fn problems(scene: &Scene) -> Vec<Problem> {
         problems.extend(unknown);
         problems.extend(circle(scene, i));
     }
-    problems.extend(unused_shapes(scene));
     problems
-}
-
-/// Warnings on shapes that nothing is made of.
-fn unused_shapes(scene: &Scene) -> impl Iterator<Item = Problem> {
-    let used = scene.uses().filter_map(|used| match used.of {
-        Of::Name(List::Shapes, name) => Some(name),
-        _ => None,
-    });
-    let used: BTreeSet<&str> = if scene.shapes.is_empty() { BTreeSet::new() } else { used.collect() };
-    scene.shapes.keys().filter(move |name| !used.contains(name.as_str())).map(|name| {
-        let problem = Problem::warning(Pointer("/shapes").join(name), "no outline and no curve is made of it");
-        problem.hint("in the editor :use NAME on one, or delete it")
-    })
 }
 
 /// The place where a layer names what, in the end, shows the layer itself.

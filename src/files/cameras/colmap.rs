@@ -14,6 +14,8 @@ use crate::layers::parts::shots::Shot;
 
 pub(super) const IMAGES: &str = "images.txt";
 const CAMERAS: &str = "cameras.txt";
+/// Where COLMAP writes a model in the folder of a project, and that itself.
+const WITHIN: [&str; 4] = ["", "sparse", "sparse/0", "0"];
 
 /// The models that are read: how many focal lengths each has, and how many numbers of distortion follow the center.
 const MODELS: [(&str, usize, usize); 5] =
@@ -36,10 +38,7 @@ pub(super) fn read(path: &Path, reading: &Reading) -> Result<Cameras> {
     let folder = if path.is_dir() { path } else { disk::folder_of(path) };
     let (cameras, images) = (folder.join(CAMERAS), folder.join(IMAGES));
     if !is_there(&images) {
-        let converted = folder.join(IMAGES).with_extension("bin");
-        let error =
-            || Error::at(folder.display(), format!("has no {IMAGES}")).cure("name the folder of a COLMAP text model");
-        return Err(if is_there(&converted) { binary(folder) } else { error() });
+        return Err(without(folder));
     }
     let known = read_cameras(&cameras, reading)?;
     let beside = folder.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -47,6 +46,23 @@ pub(super) fn read(path: &Path, reading: &Reading) -> Result<Cameras> {
     let pictures = reading.images.map(Path::to_owned).or(pictures).unwrap_or_else(|| beside.join("images"));
     let shots = read_images(&images, &known, &pictures, reading)?;
     Ok(Cameras { shots, ..Cameras::default() })
+}
+
+/// Why a folder is no text model, with the one that it holds.
+fn without(folder: &Path) -> Error {
+    let has = |place: &&str, end: &str| is_there(&folder.join(place).join(IMAGES).with_extension(end));
+    let holds = |end: &str| {
+        WITHIN.iter().find(|place| has(place, end)).map(|place| folder.join(place).components().collect::<PathBuf>())
+    };
+    match (holds("txt"), holds("bin")) {
+        (Some(text), _) => {
+            Error::at(folder.display(), format!("has no {IMAGES}")).cure(format!("name {}", text.display()))
+        }
+        (None, Some(other)) => binary(&other),
+        (None, None) => {
+            Error::at(folder.display(), format!("has no {IMAGES}")).cure("name the folder of a COLMAP text model")
+        }
+    }
 }
 
 fn read_cameras(path: &Path, reading: &Reading) -> Result<HashMap<u64, Camera>> {

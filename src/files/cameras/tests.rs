@@ -169,6 +169,10 @@ fn what_is_refused_names_its_place_and_the_cure() {
     for name in ["", "images.bin"] {
         assert!(message(&binary, name).contains("colmap model_converter --output_type TXT"), "{name}");
     }
+    for (file, told) in [("0/images.bin", "sparse/0: is a binary model"), ("images.txt", "has no images.txt (name ")] {
+        let project = folder(&[(&format!("sparse/{file}"), "")]);
+        assert!(message(&project, "").contains(told), "{}", message(&project, ""));
+    }
 
     for (change, expected) in [
         (json!({ "k1": 0.1 }), "k1 is not 0: the camera has distortion"),

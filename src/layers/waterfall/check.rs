@@ -126,10 +126,7 @@ fn of_lines(layer: &WaterfallLayer) -> Vec<Problem> {
 
 /// The problem with so many sprites at once, if they are too many.
 fn too_many(count: f64) -> Option<Problem> {
-    let message = || {
-        let (count, most) = (count / 1e6, MOST_SPRITES / 1e6);
-        format!("{count:.1} million sprites at once, and {most} million is the most")
-    };
+    let message = || format!("{count:.0} sprites at once, at most {MOST_SPRITES:.0} are allowed");
     (count > MOST_SPRITES).then(|| Problem::error("/lines", message()).hint("lower lines, rate or life"))
 }
 

@@ -211,6 +211,11 @@ fn meaning(shots: &[Shot], corners: &[DVec3], place: &DAffine3, layer: &str) -> 
             "z is up in their world: --axes z-up turns them to a mesh that stands, pose.rotate [-90, 0, 0] of {} both",
             quoted(layer)
         ));
+    } else if up.z < -UPRIGHT {
+        told.push(format!(
+            "z is down in their world: leave --axes z-up out, or pose.rotate [90, 0, 0] of {} would turn it",
+            quoted(layer)
+        ));
     } else if up.y < -0.2 {
         told.push(format!(
             "their pictures stand on their heads: pose.rotate [180, 0, 0] of {} would turn it",
@@ -248,6 +253,7 @@ mod tests {
         for (down, forward, told) in [
             (DVec3::NEG_Y, DVec3::NEG_Z, None),
             (DVec3::Y, DVec3::NEG_Z, Some("stand on their heads: pose.rotate [180, 0, 0] of \"m\"")),
+            (DVec3::Z, DVec3::Y, Some("z is down in their world: leave --axes z-up out")),
             (DVec3::NEG_Z, DVec3::Y, Some("z is up in their world: --axes z-up turns them")),
         ] {
             let found = meaning(&[shot(down, forward)], &[DVec3::ZERO], &DAffine3::IDENTITY, "m");
