@@ -277,6 +277,30 @@ fn shots(folder: &Path) {
 }
 
 #[test]
+fn a_map_that_needs_more_memory_than_is_allowed_is_rendered_without_what_it_needs() {
+    let folder = folder();
+    let at = folder.path();
+    shots(at);
+    let view = json!({ "name": "a", "image": "a", "camera": { "position": [0, 7, 9], "target": [0, 7, 0] } });
+    let surface = json!({ "kind": "view-map", "levels": 4, "views": [view] });
+    let scene = json!({ "plica": 1, "size": [8, 8], "camera": { "position": [0, 7, 9], "target": [0, 7, 0] },
+        "images": { "a": { "path": "images/front.png" } }, "meshes": { "wall": { "path": "wall.obj" } },
+        "layers": [{ "kind": "mesh", "name": "wall", "mesh": "wall", "surface": surface }] });
+    std::fs::write(at.join("shots/s.plica.json"), scene.to_string()).unwrap();
+    for (limit, told) in [("300000", true), ("40000000", false)] {
+        for pass in [&[][..], &["--pass", "independent"]] {
+            let line = ["render", "shots/s.plica.json", "-o", "o.png", "--limit", &format!("memory={limit}")];
+            let (_, said) = plica(at, &[&line[..], pass].concat(), true);
+            assert_eq!(
+                said.contains("layers.wall.surface: warning: needs ") && said.contains(" is shown"),
+                told,
+                "{said}"
+            );
+        }
+    }
+}
+
+#[test]
 fn cameras_of_other_programs_become_views_once() {
     let folder = folder();
     let at = folder.path();

@@ -9,7 +9,7 @@ use std::path::{Component, Path, PathBuf};
 use super::temporary::{self, Temporary};
 use super::{disk, paths};
 use crate::base::error::{Error, Result};
-use crate::base::system;
+use crate::base::system::{self, beneath};
 
 /// Writes `bytes` to `path` atomically. An existing file's mode and extended attributes are kept; a link is followed.
 ///
@@ -198,6 +198,7 @@ pub fn failed(place: impl std::fmt::Display, error: &(dyn std::error::Error + 's
     let failed = Error::at(place, format!("cannot be written: {io}"));
     match CURES.iter().find(|(kind, ..)| *kind == io.kind()) {
         Some((.., cure)) => failed.cure(*cure),
+        None if beneath::is_loop(io) => failed.cure("mend the link"),
         None => failed,
     }
 }
@@ -299,5 +300,9 @@ mod tests {
         }
         write_new(&folder.path().join("new"), b"x").unwrap();
         assert!(write_new(&folder.path().join("new"), b"y").unwrap_err().to_string().contains("there already"));
+        std::os::unix::fs::symlink("round", folder.path().join("round")).unwrap();
+        assert!(
+            write_new(&folder.path().join("round/new"), b"y").unwrap_err().to_string().ends_with("(mend the link)")
+        );
     }
 }
