@@ -300,7 +300,7 @@ mod tests {
         }
         write_new(&folder.path().join("new"), b"x").unwrap();
         assert!(write_new(&folder.path().join("new"), b"y").unwrap_err().to_string().contains("there already"));
-        std::os::unix::fs::symlink("round", folder.path().join("round")).unwrap();
+        symlink("round", folder.path().join("round")).unwrap();
         assert!(
             write_new(&folder.path().join("round/new"), b"y").unwrap_err().to_string().ends_with("(mend the link)")
         );
