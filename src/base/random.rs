@@ -4,8 +4,17 @@
 /// Four mixed numbers of 32 bits.
 #[inline]
 pub fn pcg4d(v: [u32; 4]) -> [u32; 4] {
-    let v = v.map(|n| n.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
-    mixed(mixed(v).map(|n| n ^ (n >> 16)))
+    pcg4d_lanes(v.map(|n| [n])).map(|[n]| n)
+}
+
+/// The same for many at once: each of the four numbers has as many lanes.
+#[inline(always)]
+pub fn pcg4d_lanes<const N: usize>(mut v: [[u32; N]; 4]) -> [[u32; N]; 4] {
+    v.as_flattened_mut().iter_mut().for_each(|n| *n = n.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
+    mix(&mut v);
+    v.as_flattened_mut().iter_mut().for_each(|n| *n ^= *n >> 16);
+    mix(&mut v);
+    v
 }
 
 /// 24 of the bits as a number in [0, 1).
@@ -14,13 +23,14 @@ pub fn unit(bits: u32) -> f64 {
     f64::from(bits >> 8) / f64::from(1_u32 << 24)
 }
 
-#[inline]
-fn mixed([mut x, mut y, mut z, mut w]: [u32; 4]) -> [u32; 4] {
-    x = x.wrapping_add(y.wrapping_mul(w));
-    y = y.wrapping_add(z.wrapping_mul(x));
-    z = z.wrapping_add(x.wrapping_mul(y));
-    w = w.wrapping_add(y.wrapping_mul(z));
-    [x, y, z, w]
+#[inline(always)]
+fn mix<const N: usize>([x, y, z, w]: &mut [[u32; N]; 4]) {
+    for k in 0..N {
+        x[k] = x[k].wrapping_add(y[k].wrapping_mul(w[k]));
+        y[k] = y[k].wrapping_add(z[k].wrapping_mul(x[k]));
+        z[k] = z[k].wrapping_add(x[k].wrapping_mul(y[k]));
+        w[k] = w[k].wrapping_add(y[k].wrapping_mul(z[k]));
+    }
 }
 
 #[cfg(test)]

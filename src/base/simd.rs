@@ -3,10 +3,20 @@
 use std::ops::{Add, Mul, Sub};
 
 /// Runs `work`, compiled for AVX2 where the processor has it. The bits are those that it gives elsewhere: the compiler
-/// never fuses a product and a sum. What `work` calls is compiled for the same vectors only if it is inlined.
+/// never fuses a product and a sum by itself. What `work` calls is compiled for the same vectors only if it is inlined.
 #[inline(always)]
 pub fn vectorised<R>(work: impl FnOnce() -> R) -> R {
     pulp::Arch::new().dispatch(work)
+}
+
+/// a b + c, rounded once: one instruction within [`vectorised`], a call elsewhere, with the same bits.
+#[expect(
+    clippy::disallowed_methods,
+    reason = "the door to it: its bits are the same everywhere, but it is slow without vectors"
+)]
+#[inline(always)]
+pub fn fused(a: f32, b: f32, c: f32) -> f32 {
+    a.mul_add(b, c)
 }
 
 /// Eight numbers. In code without branches they become one vector where the processor has such wide ones.

@@ -107,10 +107,15 @@ impl Aim<'_> {
     }
 
     /// The direction of a stroke at a place of a triangle, clockwise from +x, and how sure it is.
-    pub fn angle(&self, surface: &Surface, facet: &Facet, weights: DVec3, place: DVec3) -> (f64, f64) {
-        if let Follows::Screen = self.along {
-            return (self.drawn, 1.0);
+    #[inline(always)]
+    pub fn angle(&self, surface: &Surface, facet: &Facet, weights: impl FnOnce() -> DVec3, place: DVec3) -> (f64, f64) {
+        match self.along {
+            Follows::Screen => (self.drawn, 1.0),
+            _ => self.angle_on(surface, facet, weights(), place),
         }
+    }
+
+    fn angle_on(&self, surface: &Surface, facet: &Facet, weights: DVec3, place: DVec3) -> (f64, f64) {
         let (normal, drawn) = (facing(facet, weights), -(self.angle + self.turn));
         if let Follows::Outline = self.along {
             let across = DVec2::new(normal.x, -normal.y);

@@ -2,6 +2,7 @@
 //! the compiler vectorises, with the same bits everywhere.
 
 use crate::base::maths::TAU;
+use crate::base::simd::fused;
 
 /// e to the minus pi: what a kernel's curve has at its edge.
 pub const EDGE: f64 = 0.043_213_918_263_772_25;
@@ -26,16 +27,13 @@ const CURVE: [f32; 9] = [
 /// The sine of so many turns, up to a quarter either way, divided by them, by their square: to within 1e-8.
 const SINE: [f32; 5] = [39.759_827, -76.581_17, 81.602_48, -41.341_68, std::f32::consts::TAU];
 
-/// The curve with its wave's cosine, with its sine, and squared, for pixels in a line.
-pub type Curves<'a> = [&'a mut [f32]; 3];
-
 /// A kernel along a line of pixels.
 #[derive(Clone, Copy)]
 pub struct Line {
     /// Where the first pixel is, from the middle of the kernel, in pixels.
-    pub first: f64,
-    /// The radius of the kernel, in pixels.
-    pub radius_px: f64,
+    pub first: f32,
+    /// 1 / the radius of the kernel, in pixels.
+    pub inverse: f32,
     /// How many waves there are in a pixel.
     pub waves: f32,
     /// The phase in the middle, in turns.
@@ -45,20 +43,22 @@ pub struct Line {
 }
 
 impl Line {
-    /// Fills whole lumps of lanes; beyond the edge of the kernel there is nothing.
+    /// Fills lumps of lanes for so many pixels: the curve with its wave's cosine, with its sine, and squared. Beyond the edge of
+    /// the kernel there is nothing.
     #[inline(always)]
-    pub fn fill(&self, [cosines, sines, squares]: Curves) {
-        let (first, inverse) = (self.first as f32, (1.0 / self.radius_px) as f32);
-        let lumps = cosines.as_chunks_mut::<LANES>().0.iter_mut().zip(sines.as_chunks_mut::<LANES>().0);
-        let lumps = lumps.zip(squares.as_chunks_mut::<LANES>().0);
+    pub fn fill<const N: usize>(&self, [cosines, sines, squares]: &mut [[[f32; LANES]; N]; 3], count: usize) {
+        let lumps = cosines.iter_mut().zip(sines).zip(squares).take(count.div_ceil(LANES));
         for (lump, ((cosines, sines), squares)) in lumps.enumerate() {
-            let begin = first + (lump * LANES) as f32;
+            let begin = self.first + (lump * LANES) as f32;
+            // Apart, so that the compiler sees that none overlaps another.
+            let [mut with_cosine, mut with_sine, mut squared] = [[0.0; LANES]; 3];
             for k in 0..LANES {
                 let place = begin + k as f32;
-                let curve = self.weight * curve(place * inverse);
-                let (cosine, sine) = wave(place * self.waves + self.phase);
-                (cosines[k], sines[k], squares[k]) = (curve * cosine, curve * sine, curve * curve);
+                let curve = self.weight * curve(place * self.inverse);
+                let (cosine, sine) = wave(fused(place, self.waves, self.phase));
+                (with_cosine[k], with_sine[k], squared[k]) = (curve * cosine, curve * sine, curve * curve);
             }
+            (*cosines, *sines, *squares) = (with_cosine, with_sine, squared);
         }
     }
 }
@@ -69,7 +69,7 @@ fn curve(place: f32) -> f32 {
     let square = place * place;
     let mut value = CURVE[0];
     for factor in &CURVE[1..] {
-        value = value * square + factor;
+        value = fused(value, square, *factor);
     }
     if square < 1.0 { value } else { 0.0 }
 }
@@ -89,7 +89,7 @@ fn quarter(turns: f32) -> f32 {
     let square = turns * turns;
     let mut value = SINE[0];
     for factor in &SINE[1..] {
-        value = value * square + factor;
+        value = fused(value, square, *factor);
     }
     value * turns
 }

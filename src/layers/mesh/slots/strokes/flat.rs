@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::aim::Aim;
 use super::curves::EDGE;
-use super::impulse::{Dice, FADE, MOST, Recipe, factor};
+use super::impulse::{Dice, MOST, Recipe, factor};
 use super::sum::{InFrame, Noise, normalized};
 use super::surface::{Facet, Surface, mixed};
 use super::synth::is_set;
@@ -89,22 +89,18 @@ pub fn flats(surface: &Surface, recipe: &Recipe, aim: &Aim, (px_per_m, reach): (
         }
         let Some((_, Some((facet, area)))) = &facet else { return };
         let wanted = density * px_per_m * px_per_m * area * piece.share;
-        for number in 0.. {
-            if f64::from(number) * FADE >= wanted.min(MOST) {
-                break;
-            }
-            let dice = Dice::of([facet.triangle, piece.number, number], recipe.key);
+        Dice::each([facet.triangle, piece.number], recipe, wanted.min(MOST), |dice| {
             let factor = factor(wanted, dice.rank);
             if factor <= 0.0 {
-                continue;
+                return;
             }
             let weights = dice.weights(piece);
             let at = mixed(facet.corners, weights);
-            let axes = axes(surface, facet, aim, weights, dice.spread(recipe));
+            let axes = axes(surface, facet, aim, weights, dice.spread);
             if let Some([from, to]) = pixels(surface, at, axes, halves) {
                 found.push(Flat { at, axes, factor, phase: dice.phase, from, to });
             }
-        }
+        });
     });
     found
 }

@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use glam::{DVec2, DVec3};
 
-use super::impulse::{Dice, FADE, Impulse, Recipe, factor};
+use super::impulse::{Dice, Impulse, Recipe, factor};
 
 /// The columns and rows of cells that may have impulses in a frame, if kernels have this radius.
 pub fn cells((width, height): (usize, usize), radius_px: f64) -> [RangeInclusive<i32>; 2] {
@@ -19,11 +19,7 @@ pub fn impulses(size_px: (usize, usize), recipe: &Recipe, angle: f64) -> Vec<Imp
     let [columns, rows] = cells(size_px, recipe.radius_px);
     for a in columns {
         for b in rows.clone() {
-            for number in 0.. {
-                if f64::from(number) * FADE >= wanted {
-                    break;
-                }
-                let dice = Dice::of([a as u32, b as u32, number], recipe.key);
+            Dice::each([a as u32, b as u32], recipe, wanted, |dice| {
                 let (factor, [x, y]) = (factor(wanted, dice.rank), dice.place);
                 if factor > 0.0 {
                     found.push(Impulse {
@@ -32,14 +28,14 @@ pub fn impulses(size_px: (usize, usize), recipe: &Recipe, angle: f64) -> Vec<Imp
                         depth: 1.0,
                         factor,
                         phase: dice.phase,
-                        angle: angle + dice.spread(recipe),
+                        angle: angle + dice.spread,
                         sure: 1.0,
                         radius_px: recipe.radius_px,
                         spacing_px: recipe.spacing_px,
                         plane: DVec3::ZERO,
                     });
                 }
-            }
+            });
         }
     }
     found

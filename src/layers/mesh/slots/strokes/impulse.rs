@@ -9,7 +9,8 @@ use super::pieces::Piece;
 use super::surface::{Facet, Surface, mixed};
 use super::synth::is_set;
 use crate::base::maths::TAU;
-use crate::base::random::{pcg4d, unit};
+use crate::base::random::{pcg4d_lanes, unit};
+use crate::base::simd::vectorised;
 use crate::layers::space::eye::NEAR_M;
 
 /// 2 - 2 ln 2: with it the factors' squares add up to the number of impulses that is wanted.
@@ -18,8 +19,10 @@ pub const FADE: f64 = 2.0 - 2.0 * std::f64::consts::LN_2;
 pub const MOST: f64 = 16_384.0 * FADE;
 /// What tells the second random numbers of an impulse from the first.
 const SECOND: u32 = 0x8000_0000;
+/// So many impulses are made at once.
+const LANES: usize = 8;
 /// Triangles are looked at in so many lumps, for all cores, but in no more than these at once.
-const LUMPS: u32 = 64;
+const LUMPS: u32 = 256;
 const LUMP: u32 = 1024;
 
 /// What the impulses of a noise are made by.
@@ -76,31 +79,39 @@ pub struct Impulse {
     pub plane: DVec3,
 }
 
-/// All impulses of a noise that may be seen in the frame: by triangle, piece and number.
-pub fn impulses(surface: &Surface, recipe: &Recipe, aim: &Aim) -> Vec<Impulse> {
+/// Tells how much of an impulse counts.
+pub type Weight<'a> = &'a (dyn Fn(&Impulse) -> f64 + Sync);
+
+/// All impulses of a noise that may be seen in the frame: by triangle, piece and number, in lumps. `visible` tells how much of
+/// each is seen, where that counts.
+pub fn impulses<L: Extend<Impulse> + Send>(
+    surface: &Surface,
+    recipe: &Recipe,
+    aim: &Aim,
+    visible: Option<Weight>,
+    lump: impl Fn() -> L + Sync,
+) -> Vec<L> {
+    let making = Making { surface, recipe, aim, visible };
     let count = surface.mesh.triangles.len() as u32;
     let size = count.div_ceil(LUMPS).clamp(1, LUMP);
-    let lumps: Vec<Vec<Impulse>> = (0..count.div_ceil(size))
-        .into_par_iter()
-        .map(|lump| {
-            let mut found = Vec::new();
-            let mut facet: Option<(u32, Option<(Facet, DVec3)>)> = None;
-            surface.pieces.of(lump * size..((lump + 1) * size).min(count), |piece| {
-                if is_set(surface.stop) {
-                    return;
-                }
-                if facet.as_ref().is_none_or(|(of, _)| *of != piece.triangle) {
-                    let own = surface.facet(piece.triangle).map(|facet| (facet, surface.plane(&facet)));
-                    facet = Some((piece.triangle, own));
-                }
-                if let Some((_, Some((facet, plane)))) = &facet {
-                    of_piece(surface, recipe, aim, (facet, *plane), piece, &mut found);
-                }
-            });
-            found
-        })
-        .collect();
-    lumps.concat()
+    let lumps = (0..count.div_ceil(size)).into_par_iter().map(|i| {
+        let mut lump = lump();
+        let mut facet: Option<(u32, Option<(Facet, DVec3)>)> = None;
+        surface.pieces.of(i * size..((i + 1) * size).min(count), |piece| {
+            if is_set(surface.stop) {
+                return;
+            }
+            if facet.as_ref().is_none_or(|(of, _)| *of != piece.triangle) {
+                let own = surface.facet(piece.triangle).map(|facet| (facet, surface.plane(&facet)));
+                facet = Some((piece.triangle, own));
+            }
+            if let Some((_, Some((facet, plane)))) = &facet {
+                making.piece((facet, *plane), piece, &mut lump);
+            }
+        });
+        lump
+    });
+    lumps.collect()
 }
 
 /// The random numbers of one impulse.
@@ -114,22 +125,15 @@ pub struct Dice {
     pub phase: f64,
     /// It is there once so many are wanted: above its number, and at most 1 above.
     pub rank: f64,
+    /// How far its stroke is turned clockwise from its direction, in radians.
+    pub spread: f64,
 }
 
 impl Dice {
-    /// Those of an impulse.
-    #[inline]
-    pub fn of(of: [u32; 3], key: u32) -> Dice {
-        let bits = pcg4d([of[0], of[1], of[2], key]);
-        let [x, y, phase, _] = bits.map(unit);
-        let rank = f64::from(of[2]) + f64::from((bits[3] >> 8) + 1) / f64::from(1_u32 << 24);
-        Dice { of, place: [x, y], phase: TAU * phase, rank }
-    }
-
-    /// How far its stroke is turned clockwise from its direction, in radians.
-    pub fn spread(&self, recipe: &Recipe) -> f64 {
-        let [a, b, c] = self.of;
-        recipe.spread * (2.0 * unit(pcg4d([a, b, c, recipe.key ^ SECOND])[0]) - 1.0)
+    /// Calls `each` with those of a piece of a triangle, as many as may be there if no more than `most` are wanted.
+    #[inline(always)]
+    pub fn each(of: [u32; 2], recipe: &Recipe, most: f64, mut each: impl FnMut(Dice)) {
+        throws(of, recipe, most, |thrown| (0..LANES).for_each(|k| each(thrown.one(k))));
     }
 
     /// Its place in a piece of a triangle, as weights of the triangle's corners.
@@ -141,83 +145,159 @@ impl Dice {
     }
 }
 
-fn of_piece(
-    surface: &Surface,
-    recipe: &Recipe,
-    aim: &Aim,
-    (facet, plane): (&Facet, DVec3),
-    piece: &Piece,
-    found: &mut Vec<Impulse>,
-) {
-    let eye = &surface.eye;
-    let corners = piece.corners.map(|weights| mixed(facet.corners, weights));
-    let near = corners.map(|corner| -corner.z < NEAR_M);
-    if near == [true; 3] {
-        return;
-    }
-    if near == [false; 3] && beside(surface, corners, recipe.radius_px * aim.largest()) {
-        return;
-    }
-    let nearest = corners.iter().map(|corner| -corner.z).fold(f64::INFINITY, f64::min).max(NEAR_M);
-    let area = eye.focal_px * eye.focal_px * facet.volume * piece.share / 2.0;
-    let most = (recipe.density(aim.smallest()) * area / (nearest * nearest * nearest)).min(MOST);
-    for number in 0.. {
-        // The rank grows by 1, from 0 on.
-        if f64::from(number) * FADE >= most {
-            break;
-        }
-        let dice = Dice::of([facet.triangle, piece.number, number], recipe.key);
-        if dice.rank * FADE < most {
-            found.extend(impulse(surface, recipe, aim, (facet, plane, area), (dice, piece)));
+/// The dice of some impulses of a piece, whose numbers follow one another.
+struct Thrown {
+    first: [u32; 3],
+    place: [[f64; LANES]; 2],
+    phase: [f64; LANES],
+    rank: [f64; LANES],
+    spread: [f64; LANES],
+}
+
+impl Thrown {
+    #[inline(always)]
+    fn one(&self, k: usize) -> Dice {
+        let [triangle, piece, number] = self.first;
+        Dice {
+            of: [triangle, piece, number + k as u32],
+            place: [self.place[0][k], self.place[1][k]],
+            phase: self.phase[k],
+            rank: self.rank[k],
+            spread: self.spread[k],
         }
     }
 }
 
-/// The impulse, if it is in the frame. `area` is what the whole piece would have at a depth of 1 m, in square pixels.
-fn impulse(
-    surface: &Surface,
-    recipe: &Recipe,
-    aim: &Aim,
-    (facet, plane, area): (&Facet, DVec3, f64),
-    (dice, piece): (Dice, &Piece),
-) -> Option<Impulse> {
-    let weights = dice.weights(piece);
-    let place = mixed(facet.corners, weights);
-    let depth = -place.z;
-    if depth < NEAR_M {
-        return None;
+/// Throws the dice of the impulses of a piece, many at once, until so many are wanted.
+#[inline(always)]
+fn throws([triangle, piece]: [u32; 2], recipe: &Recipe, most: f64, mut each: impl FnMut(&Thrown)) {
+    let mut number = 0;
+    // The rank grows by 1, from 0 on.
+    while f64::from(number) * FADE < most {
+        let numbers: [u32; LANES] = std::array::from_fn(|k| number + k as u32);
+        let hashed = |key: u32| pcg4d_lanes([[triangle; LANES], [piece; LANES], numbers, [key; LANES]]);
+        let [x, y, phase, rank] = hashed(recipe.key);
+        let [spread, ..] = hashed(recipe.key ^ SECOND);
+        let mut thrown = Thrown {
+            first: [triangle, piece, number],
+            place: [x.map(unit), y.map(unit)],
+            phase: phase.map(|bits| TAU * unit(bits)),
+            rank: [0.0; LANES],
+            spread: spread.map(|bits| recipe.spread * (2.0 * unit(bits) - 1.0)),
+        };
+        for k in 0..LANES {
+            thrown.rank[k] = f64::from(numbers[k]) + f64::from((rank[k] >> 8) + 1) / f64::from(1_u32 << 24);
+        }
+        each(&thrown);
+        number += LANES as u32;
     }
-    let larger = aim.larger(surface, facet, weights, place);
-    let factor = factor(recipe.density(larger) * area / (depth * depth * depth), dice.rank);
-    let at = surface.eye.project(place);
-    let radius_px = recipe.radius_px * larger;
-    if factor <= 0.0 || !meets(at, radius_px, surface.size_px) {
-        return None;
+}
+
+/// What impulses are made of.
+struct Making<'a> {
+    surface: &'a Surface<'a>,
+    recipe: &'a Recipe,
+    aim: &'a Aim<'a>,
+    visible: Option<Weight<'a>>,
+}
+
+impl Making<'_> {
+    /// Makes those of a piece.
+    fn piece(&self, (facet, plane): (&Facet, DVec3), piece: &Piece, lump: &mut impl Extend<Impulse>) {
+        let Making { surface, recipe, aim, .. } = *self;
+        let eye = &surface.eye;
+        let corners = piece.corners.map(|weights| mixed(facet.corners, weights));
+        let near = corners.map(|corner| -corner.z < NEAR_M);
+        if near == [true; 3] {
+            return;
+        }
+        if near == [false; 3] && beside(surface, corners, recipe.radius_px * aim.largest()) {
+            return;
+        }
+        let nearest = corners.iter().map(|corner| -corner.z).fold(f64::INFINITY, f64::min).max(NEAR_M);
+        let area = eye.focal_px * eye.focal_px * facet.volume * piece.share / 2.0;
+        let most = (recipe.density(aim.smallest()) * area / (nearest * nearest * nearest)).min(MOST);
+        vectorised(
+            #[inline(always)]
+            || {
+                throws(
+                    [facet.triangle, piece.number],
+                    recipe,
+                    most,
+                    #[inline(always)]
+                    |thrown| self.lot((facet, plane, piece), (corners, area), thrown, lump),
+                );
+            },
+        );
     }
-    let (angle, sure) = aim.angle(surface, facet, weights, place);
-    Some(Impulse {
-        of: dice.of,
-        at,
-        depth,
-        factor,
-        phase: dice.phase,
-        angle: angle + dice.spread(recipe),
-        sure,
-        radius_px,
-        spacing_px: recipe.spacing_px * larger,
-        plane,
-    })
+
+    /// Makes those of these dice that are in the frame. `corners` are those of the piece; `area` is what all of it would have at
+    /// a depth of 1 m, in square pixels.
+    #[inline(always)]
+    fn lot(
+        &self,
+        (facet, plane, piece): (&Facet, DVec3, &Piece),
+        (corners, area): ([DVec3; 3], f64),
+        thrown: &Thrown,
+        lump: &mut impl Extend<Impulse>,
+    ) {
+        let Making { surface, recipe, aim, .. } = *self;
+        let ([a, b, c], eye) = (corners, &surface.eye);
+        let ([along, across], [mut x, mut y, mut z]) = (thrown.place, [[0.0; LANES]; 3]);
+        for k in 0..LANES {
+            let along = along[k].sqrt();
+            x[k] = a.x + along * (b.x - a.x + across[k] * (c.x - b.x));
+            y[k] = a.y + along * (b.y - a.y + across[k] * (c.y - b.y));
+            z[k] = a.z + along * (b.z - a.z + across[k] * (c.z - b.z));
+        }
+        let mut larger = [1.0; LANES];
+        if aim.vary.is_some() {
+            for k in 0..LANES {
+                larger[k] = aim.larger(surface, facet, thrown.one(k).weights(piece), DVec3::new(x[k], y[k], z[k]));
+            }
+        }
+        let ([mut right, mut down, mut factors], density) = ([[0.0; LANES]; 3], recipe.density(1.0) * area);
+        for k in 0..LANES {
+            let inverse = -1.0 / z[k];
+            right[k] = eye.middle_px.x + x[k] * (eye.focal_px * inverse);
+            down[k] = eye.middle_px.y - y[k] * (eye.focal_px * inverse);
+            let wanted = density * (inverse * inverse * inverse) / (larger[k] * larger[k]);
+            let half = recipe.radius_px * larger[k];
+            let meets = -z[k] >= NEAR_M && meets((right[k], down[k]), half, surface.size_px);
+            factors[k] = if meets { factor(wanted, thrown.rank[k]) } else { 0.0 };
+        }
+        for k in (0..LANES).filter(|k| factors[*k] > 0.0) {
+            let dice = thrown.one(k);
+            let (angle, sure) = aim.angle(surface, facet, || dice.weights(piece), DVec3::new(x[k], y[k], z[k]));
+            let mut impulse = Impulse {
+                of: dice.of,
+                at: DVec2::new(right[k], down[k]),
+                depth: -z[k],
+                factor: factors[k],
+                phase: dice.phase,
+                angle: angle + dice.spread,
+                sure,
+                radius_px: recipe.radius_px * larger[k],
+                spacing_px: recipe.spacing_px * larger[k],
+                plane,
+            };
+            impulse.factor *= self.visible.map_or(1.0, |visible| visible(&impulse));
+            lump.extend([impulse]);
+        }
+    }
 }
 
 /// How much an impulse of this rank counts where so many are wanted.
+#[inline(always)]
 pub fn factor(wanted: f64, rank: f64) -> f64 {
     let counted = wanted.min(MOST);
     (counted / (FADE * rank) - 1.0).clamp(0.0, 1.0) * (wanted / counted).sqrt()
 }
 
 /// Whether a square around a place has any of the frame.
-fn meets(at: DVec2, half: f64, (width, height): (usize, usize)) -> bool {
-    at.x + half > 0.0 && at.y + half > 0.0 && at.x - half < width as f64 && at.y - half < height as f64
+#[inline(always)]
+fn meets((x, y): (f64, f64), half: f64, (width, height): (usize, usize)) -> bool {
+    (x + half > 0.0) & (y + half > 0.0) & (x - half < width as f64) & (y - half < height as f64)
 }
 
 /// Whether all that is drawn around these points is beside the frame.

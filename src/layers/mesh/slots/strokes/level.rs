@@ -4,22 +4,51 @@ use std::ops::Range;
 
 use glam::{DMat3, DVec2, DVec3};
 
+use super::bins::TILE;
 use super::curves::LANES;
 
-/// How many rows a block has.
+/// How many rows a block has; it has `LANES` columns.
 const HIGH: usize = 16;
+/// How many blocks are beside one another in a tile.
+const ACROSS: usize = TILE / LANES;
 /// Every so many pixels of a tile are looked at for its plane.
-const SPARSE: usize = 4;
+const SPARSE: usize = 8;
+/// Distances are known to this share.
+const SURE: f64 = 1e-3;
 
 /// A plane that is close to what a tile shows of the layer.
 pub struct Level {
     /// 1 / its depth, as the `plane` of an impulse.
-    pub plane: DVec3,
-    /// The least and the greatest that 1 / the layer's depth is more than that in blocks of `LANES` columns and `HIGH` rows;
-    /// infinite where the layer is not seen.
-    blocks: Vec<[f64; 2]>,
-    /// How many blocks are beside one another.
-    across: usize,
+    plane: DVec3,
+    /// Where the tile is in the frame.
+    corner: DVec2,
+    /// How much more than that 1 / the layer's depth is in all of the tile.
+    all: Away,
+    /// The same in its blocks, row after row.
+    blocks: Vec<Away>,
+}
+
+/// The least and the most; the other way round where the layer is not seen.
+#[derive(Clone, Copy, Debug)]
+struct Away {
+    least: f64,
+    most: f64,
+}
+
+impl Away {
+    const NONE: Away = Away { least: f64::INFINITY, most: f64::NEG_INFINITY };
+
+    /// The least and the most distance from 0 once something is added that is known to within `spread`.
+    #[inline(always)]
+    fn distances(self, added: f64, spread: f64) -> Away {
+        let (low, high) = (self.least + added - spread, self.most + added + spread);
+        Away { least: low.max(-high), most: high.max(-low) }
+    }
+
+    #[inline(always)]
+    fn with(self, other: Away) -> Away {
+        Away { least: self.least.min(other.least), most: self.most.max(other.most) }
+    }
 }
 
 impl Level {
@@ -31,79 +60,78 @@ impl Level {
         columns: &Range<usize>,
         rows: &Range<usize>,
     ) -> Option<Level> {
-        let own = |x: usize, y: usize| {
-            let i = y * width + x;
-            (triangle[i] != u32::MAX).then(|| inverse[i])
-        };
-        // Relative to the corner: the sums stay exact enough.
         let corner = DVec2::new(columns.start as f64 + 0.5, rows.start as f64 + 0.5);
+        // Relative to the corner: the sums stay exact enough.
         let (mut squares, mut sums) = (DMat3::ZERO, DVec3::ZERO);
         for y in rows.clone().step_by(SPARSE) {
             for x in columns.clone().step_by(SPARSE) {
-                if let Some(inverse) = own(x, y) {
+                let i = y * width + x;
+                if triangle[i] != u32::MAX {
                     let at = DVec3::new((x - columns.start) as f64, (y - rows.start) as f64, 1.0);
                     squares += DMat3::from_cols(at * at.x, at * at.y, at);
-                    sums += at * inverse;
+                    sums += at * inverse[i];
                 }
             }
         }
         // Any plane serves; a close one tells more.
         let fit = if squares.determinant() > 1.0 { squares.inverse() * sums } else { DVec3::ZERO };
-        let plane = fit.with_z(fit.z - fit.x * corner.x - fit.y * corner.y);
-        let (across, down) = (columns.len().div_ceil(LANES), rows.len().div_ceil(HIGH));
-        let mut least = vec![[f64::INFINITY; LANES]; across * down];
-        let mut most = vec![[f64::NEG_INFINITY; LANES]; across * down];
-        let mut away = vec![f64::NAN; across * LANES];
-        for y in rows.clone() {
-            let own = y * width + columns.start..y * width + columns.end;
-            let first = plane.x * (columns.start as f64 + 0.5) + plane.y * (y as f64 + 0.5) + plane.z;
-            let pixels = inverse[own.clone()].iter().zip(&triangle[own]);
-            for (x, (away, (inverse, triangle))) in away.iter_mut().zip(pixels).enumerate() {
-                let found = inverse - (plane.x * x as f64 + first);
-                *away = if *triangle != u32::MAX { found } else { f64::NAN };
-            }
-            let block = (y - rows.start) / HIGH * across;
-            let blocks = least[block..].iter_mut().zip(&mut most[block..]);
-            for (lump, (least, most)) in away.as_chunks::<LANES>().0.iter().zip(blocks) {
-                for (k, away) in lump.iter().enumerate() {
-                    // What is not a number is neither.
-                    least[k] = if *away < least[k] { *away } else { least[k] };
-                    most[k] = if *away > most[k] { *away } else { most[k] };
+        let mut blocks = Vec::with_capacity(ACROSS * TILE / HIGH);
+        for first in rows.clone().step_by(HIGH) {
+            let (mut least, mut most) = ([[f32::INFINITY; LANES]; ACROSS], [[f32::NEG_INFINITY; LANES]; ACROSS]);
+            for y in first..(first + HIGH).min(rows.end) {
+                let own = y * width + columns.start..y * width + columns.end;
+                let (mut inverses, mut triangles) = ([0.0; TILE], [u32::MAX; TILE]);
+                inverses[..own.len()].copy_from_slice(&inverse[own.clone()]);
+                triangles[..own.len()].copy_from_slice(&triangle[own]);
+                let level = fit.y * (y - rows.start) as f64 + fit.z;
+                for lump in 0..ACROSS {
+                    let level = level + fit.x * (lump * LANES) as f64;
+                    for k in 0..LANES {
+                        let i = lump * LANES + k;
+                        let away = (inverses[i] - (fit.x * k as f64 + level)) as f32;
+                        let is_own = triangles[i] != u32::MAX;
+                        let (low, high) = (&mut least[lump][k], &mut most[lump][k]);
+                        *low = if is_own & (away < *low) { away } else { *low };
+                        *high = if is_own & (away > *high) { away } else { *high };
+                    }
                 }
             }
-        }
-        let least = least.into_iter().map(|block| block.into_iter().fold(f64::INFINITY, f64::min));
-        let most = most.into_iter().map(|block| block.into_iter().fold(f64::NEG_INFINITY, f64::max));
-        let blocks: Vec<[f64; 2]> = least.zip(most).map(|(least, most)| [least, most]).collect();
-        blocks.iter().any(|[least, most]| least <= most).then_some(Level { plane, blocks, across })
-    }
-
-    /// Whether all of the layer in these columns and rows of the tile is within `reach` of a plane, or all of it beyond twice
-    /// that; `None` if that differs. The plane is given by what is added to what is away: at the first pixel of the tile, and
-    /// for each column and row.
-    #[inline(always)]
-    pub fn within(
-        &self,
-        (first, slope): (f64, DVec2),
-        columns: &Range<usize>,
-        rows: &Range<usize>,
-        reach: f64,
-    ) -> Option<bool> {
-        let half = DVec2::new(LANES as f64 - 1.0, HIGH as f64 - 1.0) / 2.0;
-        let spread = slope.abs().dot(half);
-        let (mut farthest, mut nearest) = (0.0_f64, f64::INFINITY);
-        for y in rows.start / HIGH..rows.end.div_ceil(HIGH) {
-            for x in columns.start / LANES..columns.end.div_ceil(LANES) {
-                let middle = first + slope.dot(DVec2::new((x * LANES) as f64, (y * HIGH) as f64) + half);
-                let [least, most] = self.blocks[y * self.across + x];
-                let (low, high) = (least + middle - spread, most + middle + spread);
-                farthest = farthest.max(high).max(-low);
-                nearest = nearest.min(low.max(-high));
+            for (least, most) in least.iter().zip(&most) {
+                let (least, most) = (least.iter().copied().reduce(f32::min), most.iter().copied().reduce(f32::max));
+                blocks.extend(least.zip(most).map(|(least, most)| Away { least: least.into(), most: most.into() }));
             }
         }
-        if farthest <= reach {
-            return Some(true);
+        let plane = fit.with_z(fit.z - fit.x * corner.x - fit.y * corner.y);
+        let all = blocks.iter().copied().reduce(Away::with)?;
+        (all.least <= all.most).then_some(Level { plane, corner, all, blocks })
+    }
+
+    /// Whether a kernel covers all of the layer in these columns and rows of the tile, or nothing; `None` if that differs. It is
+    /// one on this plane, and reaches so far from it, in 1 / depth.
+    #[inline(always)]
+    pub fn covered(&self, (plane, reach): (DVec3, f64), columns: &Range<usize>, rows: &Range<usize>) -> Option<bool> {
+        let apart = self.plane - plane;
+        let added = |x: f64, y: f64| apart.x * (self.corner.x + x) + apart.y * (self.corner.y + y) + apart.z;
+        let spread = |wide: f64, high: f64| apart.x.abs() * wide + apart.y.abs() * high;
+        let told = |Away { least, most }: Away| match most <= reach * (1.0 - SURE) {
+            true => Some(true),
+            false => (least >= 2.0 * reach * (1.0 + SURE)).then_some(false),
+        };
+        let half = |range: &Range<usize>| (range.len() - 1) as f64 / 2.0;
+        let (wide, high) = (half(columns), half(rows));
+        let middle = added(columns.start as f64 + wide, rows.start as f64 + high);
+        let known = told(self.all.distances(middle, spread(wide, high)));
+        if known.is_some() {
+            return known;
         }
-        (nearest >= 2.0 * reach).then_some(false)
+        let (wide, high) = (half(&(0..LANES)), half(&(0..HIGH)));
+        let (mut all, spread) = (Away::NONE, spread(wide, high));
+        for y in rows.start / HIGH..rows.end.div_ceil(HIGH) {
+            for x in columns.start / LANES..columns.end.div_ceil(LANES) {
+                let middle = added((x * LANES) as f64 + wide, (y * HIGH) as f64 + high);
+                all = all.with(self.blocks[y * ACROSS + x].distances(middle, spread));
+            }
+        }
+        told(all)
     }
 }

@@ -1,14 +1,17 @@
 //! One noise of a layer in one frame: from its description to its value at every pixel.
 
 use glam::{DMat3, DVec2, DVec3};
+use rayon::prelude::*;
 
 use super::aim::{Aim, Follows, Grows};
-use super::impulse::{Impulse, Recipe, impulses};
+use super::bins::{Binning, Bins};
+use super::impulse::{Impulse, Recipe, Weight, impulses};
 use super::model::{Along, Anchor, By, Direction, Noise as Wanted, Trim as Ends, Vary};
 use super::sum::{InFrame, Noise, Trim, covers, sum};
 use super::surface::Surface;
 use super::synth::{Codes, Ready, SMOOTH, is_set};
-use super::{even, flat, grid, visible};
+use super::visible::Visible;
+use super::{even, flat, grid};
 use crate::layers::mesh::drawing::Given;
 
 /// A layer in one frame.
@@ -41,7 +44,7 @@ impl<'a> Scene<'a> {
         let stop = ready.stop.as_deref();
         let surface = Surface { mesh, pieces, seen, placed: given.placed, both: given.both, eye, size_px, stop };
         let (inverse, triangle) = (&*given.inverse, &*given.triangle);
-        let shown = InFrame { size_px, focal_px: eye.focal_px, inverse, triangle, stop };
+        let shown = InFrame::new((size_px, eye.focal_px), inverse, triangle, stop);
         let drawing = (given.t * ready.duration * ready.strokes.redraw + 1e-9).floor() as u32;
         let (light, scale) = (eye.turn * -given.toward, ready.scale * given.magnified);
         Scene { ready, given, surface, shown, light, scale, drawing }
@@ -64,17 +67,18 @@ impl<'a> Scene<'a> {
     /// The impulses of one of its noises that reach a pixel; `None` for a texture, which has none in the frame.
     pub fn reaching(&self, wanted: &Wanted, (x, y): (usize, usize)) -> Option<Vec<Impulse>> {
         let at = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
-        let (points, trim) = self.impulses(wanted)?;
+        let trim = self.trim(wanted);
         let reaches = |impulse: &Impulse| {
             let away = (impulse.at - at).abs();
             away.max_element() < impulse.radius_px && covers(&self.shown, trim, impulse, (x, y)) > 0.0
         };
-        Some(points.into_iter().filter(reaches).collect())
+        Some(self.impulses(wanted)?.into_iter().filter(reaches).collect())
     }
 
-    /// All impulses of one of its noises, and what their kernels cover; `None` for a texture.
-    pub fn impulses(&self, wanted: &Wanted) -> Option<(Vec<Impulse>, Trim)> {
-        self.aimed(wanted, |anchor, aim| self.points(wanted, anchor, aim))
+    /// All impulses of one of its noises; `None` for a texture, which has none in the frame.
+    pub fn impulses(&self, wanted: &Wanted) -> Option<Vec<Impulse>> {
+        let lumps = self.aimed(wanted, |anchor, aim| self.lumps(wanted, (anchor, aim), Vec::new));
+        Some(lumps?.concat())
     }
 
     /// What a noise is fixed to: its own anchor, otherwise that of the strokes.
@@ -152,27 +156,38 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// The impulses of a noise, and what their kernels cover; `None` for a texture.
-    fn points(&self, wanted: &Wanted, anchor: Anchor, aim: &Aim) -> Option<(Vec<Impulse>, Trim)> {
-        let (recipe, trim) = (self.recipe(wanted), self.trim(wanted));
-        let points = match anchor {
+    /// The impulses of a noise in lumps, in order; `None` for a texture, which has none in the frame.
+    fn lumps<L: Extend<Impulse> + Send>(
+        &self,
+        wanted: &Wanted,
+        (anchor, aim): (Anchor, &Aim),
+        lump: impl Fn() -> L + Sync,
+    ) -> Option<Vec<L>> {
+        let recipe = self.recipe(wanted);
+        match anchor {
             Anchor::Surface => {
-                let mut points = impulses(&self.surface, &recipe, aim);
-                if trim == Trim::Object {
-                    visible::weigh(&self.shown, wanted.reach, &mut points);
-                }
-                points
+                let visible = Visible::new(&self.shown, wanted.reach);
+                let visible = |impulse: &Impulse| visible.of(impulse);
+                let visible: Option<Weight> = (self.trim(wanted) == Trim::Object).then_some(&visible);
+                Some(impulses(&self.surface, &recipe, aim, visible, lump))
             }
-            Anchor::Screen => grid::impulses(self.shown.size_px, &recipe, aim.drawn),
-            Anchor::Texture => return None,
-        };
-        Some((points, trim))
+            Anchor::Screen => {
+                let mut lump = lump();
+                lump.extend(grid::impulses(self.shown.size_px, &recipe, aim.drawn));
+                Some(vec![lump])
+            }
+            Anchor::Texture => None,
+        }
     }
 
     fn made(&self, wanted: &Wanted, anchor: Anchor, aim: &Aim) -> Noise {
         let shown = &self.shown;
-        let mut found = match self.points(wanted, anchor, aim) {
-            Some((points, trim)) => sum(shown, &points, wanted.overlap, trim),
+        let lumps = self.lumps(wanted, (anchor, aim), || Binning::new(shown.size_px, shown.focal_px));
+        let mut found = match lumps {
+            Some(lumps) => {
+                let lumps: Vec<Bins> = lumps.into_par_iter().map(Binning::sorted).collect();
+                sum(shown, &lumps, (wanted.overlap, wanted.regularity), self.trim(wanted))
+            }
             None => flat::sum(&self.surface, shown, &self.recipe(wanted), aim, self.px_per_m(), wanted.reach),
         };
         if wanted.even {

@@ -64,7 +64,7 @@ pub fn marks(ready: &Ready, given: &Given, view: &View) -> Vec<Mark> {
         return marks;
     }
     let Some(name) = noise(ready, view) else { return marks };
-    let of_noise = scene.impulses(&ready.strokes.noises[name]).map(|(all, _)| all).unwrap_or_default();
+    let of_noise = scene.impulses(&ready.strokes.noises[name]).unwrap_or_default();
     let seen: Vec<Impulse> = of_noise.into_iter().filter(|impulse| is_seen(given, impulse)).collect();
     let path = Pointer("/strokes/noises").join(name);
     if view.shows(IMPULSES) {

@@ -1,6 +1,7 @@
 //! Small drawings of noises and of what inks.
 
 use super::aim::{Aim, Follows};
+use super::bins::Binning;
 use super::even::even;
 use super::force::Strokes;
 use super::grid;
@@ -55,8 +56,10 @@ fn patch(strokes: &Force, noise: &Noise) -> Patch {
         let recipe = Recipe { key, spacing_px, radius_px: spacing_px * regularity, overlap, spread };
         let count = size.0 * size.1;
         let (inverse, triangle) = (vec![1.0; count], vec![0; count]);
-        let shown = InFrame { size_px: size, focal_px: 1.0, inverse: &inverse, triangle: &triangle, stop: None };
-        let mut found = sum(&shown, &grid::impulses(size, &recipe, angle), overlap, Trim::Object);
+        let shown = InFrame::new((size, 1.0), &inverse, &triangle, None);
+        let mut kernels = Binning::new(size, shown.focal_px);
+        kernels.extend(grid::impulses(size, &recipe, angle));
+        let mut found = sum(&shown, &[kernels.sorted()], (overlap, regularity), Trim::Object);
         if is_even {
             even(size, &triangle, spacing_px, &mut found);
         }

@@ -1,18 +1,22 @@
 //! The sum of all kernels: tile by tile, in the order of the impulses, so that the bits do not depend on threads.
 
 use std::ops::Range;
+use std::sync::OnceLock;
 use std::sync::atomic::AtomicBool;
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use rayon::prelude::*;
 
-use super::bins::{Bins, TILE};
-use super::curves::{Curves, LANES, Line, turns, wave};
+use super::bins::{Bins, Facet, Kernel, TILE};
+use super::curves::{LANES, Line, wave};
 use super::impulse::Impulse;
 use super::level::Level;
 use super::synth::is_set;
 use crate::base::maths::{TAU, smoothstep};
-use crate::base::simd::vectorised;
+use crate::base::simd::{fused, vectorised};
+
+/// The curves of a kernel along a row or down a column of a tile.
+type Curves = [[[f32; LANES]; TILE / LANES]; 3];
 
 /// How long the rows of a tile are in memory: a lump of lanes may begin at its last pixel.
 const STRIDE: usize = TILE + LANES;
@@ -44,6 +48,48 @@ pub struct InFrame<'a> {
     pub triangle: &'a [u32],
     /// Once it is set, the sum counts no more.
     pub stop: Option<&'a AtomicBool>,
+    /// The levels of its tiles, row after row, once they are needed; `None` where the layer is not seen.
+    levels: OnceLock<Vec<Option<Level>>>,
+}
+
+impl<'a> InFrame<'a> {
+    /// A frame of this size, with the picture plane at this distance.
+    pub fn new(
+        (size_px, focal_px): ((usize, usize), f64),
+        inverse: &'a [f64],
+        triangle: &'a [u32],
+        stop: Option<&'a AtomicBool>,
+    ) -> InFrame<'a> {
+        InFrame { size_px, focal_px, inverse, triangle, stop, levels: OnceLock::new() }
+    }
+
+    /// What some pixels of a row have, from this one on; what is beyond the end is not to be used.
+    #[inline(always)]
+    fn lanes<T: Copy + Default>(&self, of: &[T], (x, y): (usize, usize)) -> [T; LANES] {
+        let rest = &of[y * self.size_px.0 + x..];
+        rest.first_chunk().copied().unwrap_or_else(|| {
+            let mut lanes = [T::default(); LANES];
+            lanes[..rest.len()].copy_from_slice(rest);
+            lanes
+        })
+    }
+
+    fn levels(&self) -> &[Option<Level>] {
+        self.levels.get_or_init(|| {
+            let (width, height) = self.size_px;
+            let across = width.div_ceil(TILE);
+            let tiles = (0..across * height.div_ceil(TILE)).into_par_iter();
+            let level = |i: usize| {
+                let (x, y) = (i % across * TILE, i / across * TILE);
+                let (columns, rows) = (x..(x + TILE).min(width), y..(y + TILE).min(height));
+                vectorised(
+                    #[inline(always)]
+                    || Level::new((width, self.inverse, self.triangle), &columns, &rows),
+                )
+            };
+            tiles.map(level).collect()
+        })
+    }
 }
 
 /// A noise at each pixel: mean 0 and variance 1 on the layer.
@@ -55,234 +101,213 @@ pub struct Noise {
     pub share: Vec<f32>,
 }
 
-/// The sum of impulses, `overlap` of which are over each pixel.
-pub fn sum(shown: &InFrame, impulses: &[Impulse], overlap: f64, trim: Trim) -> Noise {
+/// The sum of the kernels of impulses, `overlap` of which are over each pixel, with so many waves in a radius.
+pub fn sum(shown: &InFrame, lumps: &[Bins], (overlap, waves): (f64, f64), trim: Trim) -> Noise {
     let (width, height) = shown.size_px;
-    let across = width.div_ceil(TILE).max(1);
-    let bins = Bins::new(shown.size_px, impulses);
-    let scale = Scale::new(overlap);
+    let (across, scale) = (width.div_ceil(TILE), Scale::new(overlap));
     let mut noise = Noise { value: vec![0.0; width * height], share: vec![0.0; width * height] };
-    let lines = (width * TILE).max(1);
-    let lines = noise.value.par_chunks_mut(lines).zip(noise.share.par_chunks_mut(lines)).enumerate();
-    lines.for_each(|(j, (values, shares))| {
-        let rows = j * TILE..((j + 1) * TILE).min(height);
-        let tile = |i: usize| {
-            let columns = i * TILE..((i + 1) * TILE).min(width);
-            vectorised(
-                #[inline(always)]
-                || {
-                    let mut tile = Tile::new(shown, columns, rows.clone(), trim)?;
-                    tile.add_all(impulses, bins.of(j * across + i));
-                    tile.finish(&scale);
-                    Some(tile)
-                },
-            )
-        };
-        let tiles: Vec<Option<Tile>> = (0..across).into_par_iter().map(tile).collect();
-        for tile in tiles.iter().flatten() {
-            for (k, own) in (0..rows.len()).map(|k| (k, k * STRIDE..k * STRIDE + tile.columns.len())) {
-                let out = k * width + tile.columns.start..k * width + tile.columns.end;
-                values[out.clone()].copy_from_slice(&tile.value[own.clone()]);
-                shares[out].copy_from_slice(&tile.power[own]);
-            }
-        }
+    // What is written to, row by row of each tile.
+    let mut tiles: Vec<Vec<[&mut [f32]; 2]>> = Vec::new();
+    tiles.resize_with(across * height.div_ceil(TILE), || Vec::with_capacity(TILE));
+    let rows = noise.value.chunks_mut(width.max(1)).zip(noise.share.chunks_mut(width.max(1)));
+    for (y, (values, shares)) in rows.enumerate() {
+        let parts = values.chunks_mut(TILE).zip(shares.chunks_mut(TILE));
+        tiles[y / TILE * across..]
+            .iter_mut()
+            .zip(parts)
+            .for_each(|(tile, (values, shares))| tile.push([values, shares]));
+    }
+    let tiles = tiles.into_par_iter().zip(shown.levels()).enumerate();
+    tiles.for_each_init(Sums::default, |sums, (i, (mut out, level))| {
+        let Some(level) = level else { return };
+        let (x, y) = (i % across, i / across);
+        let size = (out[0][0].len(), out.len());
+        vectorised(
+            #[inline(always)]
+            || {
+                let mut tile =
+                    Tile { shown, corner: (x * TILE, y * TILE), size, trim, waves: waves as f32, level, sums };
+                tile.sums.clear();
+                for lump in lumps {
+                    tile.add_all(&lump.facets, lump.of(x, y));
+                }
+                tile.finish(&scale, &mut out);
+            },
+        );
     });
     noise
 }
 
-/// Some columns of some rows.
-struct Tile<'a> {
-    shown: &'a InFrame<'a>,
-    columns: Range<usize>,
-    rows: Range<usize>,
-    trim: Trim,
-    level: Level,
-    /// 1 / the depth of what each pixel shows, in rows of `STRIDE`, as are the sums.
-    inverse: Vec<f64>,
+/// Sums of kernels and of their variances, in rows of `STRIDE`.
+#[derive(Default)]
+struct Sums {
     value: Vec<f32>,
     power: Vec<f32>,
 }
 
-impl<'a> Tile<'a> {
-    /// `None` if the layer is not seen in it.
-    #[inline(always)]
-    fn new(shown: &'a InFrame<'a>, columns: Range<usize>, rows: Range<usize>, trim: Trim) -> Option<Tile<'a>> {
-        let level = Level::new((shown.size_px.0, shown.inverse, shown.triangle), &columns, &rows)?;
-        let cells = STRIDE * rows.len();
-        let mut inverse = vec![0.0; cells];
-        for (own, y) in inverse.chunks_exact_mut(STRIDE).zip(rows.clone()) {
-            let from = y * shown.size_px.0;
-            own[..columns.len()].copy_from_slice(&shown.inverse[from + columns.start..from + columns.end]);
+impl Sums {
+    fn clear(&mut self) {
+        for sums in [&mut self.value, &mut self.power] {
+            sums.clear();
+            sums.resize(STRIDE * TILE, 0.0);
         }
-        Some(Tile { shown, columns, rows, trim, level, inverse, value: vec![0.0; cells], power: vec![0.0; cells] })
     }
+}
 
-    /// Adds these impulses.
+/// A part of the frame.
+struct Tile<'a> {
+    shown: &'a InFrame<'a>,
+    /// Its first column and row, and how many it has.
+    corner: (usize, usize),
+    size: (usize, usize),
+    trim: Trim,
+    /// How many waves a radius has.
+    waves: f32,
+    level: &'a Level,
+    sums: &'a mut Sums,
+}
+
+impl Tile<'_> {
+    /// Adds these kernels, of impulses of these triangles.
     #[inline(always)]
-    fn add_all(&mut self, impulses: &[Impulse], wanted: &[u32]) {
-        let mut scratch = Scratch::default();
-        for lump in wanted.chunks(LANES) {
+    fn add_all(&mut self, facets: &[Facet], kernels: &[Kernel]) {
+        let mut curves = [[[[0.0; LANES]; TILE / LANES]; 3]; 2];
+        for lump in kernels.chunks(LANES) {
             if is_set(self.shown.stop) {
                 return;
             }
             let mut angles = [0.0; LANES];
-            for (angle, &i) in angles.iter_mut().zip(lump) {
-                *angle = turns(impulses[i as usize].angle);
-            }
+            angles.iter_mut().zip(lump).for_each(|(angle, kernel)| *angle = kernel.angle);
             let (mut cosines, mut sines) = ([0.0; LANES], [0.0; LANES]);
             for k in 0..LANES {
                 (cosines[k], sines[k]) = wave(angles[k]);
             }
-            for (k, &i) in lump.iter().enumerate() {
-                self.add(&impulses[i as usize], (cosines[k], sines[k]), &mut scratch);
+            for (k, kernel) in lump.iter().enumerate() {
+                self.add(kernel, &facets[kernel.facet as usize], (cosines[k], sines[k]), &mut curves);
             }
         }
     }
 
-    /// Adds an impulse whose angle has this cosine and this sine.
+    /// Adds a kernel whose angle has this cosine and this sine.
     #[inline(always)]
-    fn add(&mut self, impulse: &Impulse, (cosine, sine): (f32, f32), scratch: &mut Scratch) {
-        let columns = reached(impulse.at.x, impulse.radius_px, &self.columns);
-        let rows = reached(impulse.at.y, impulse.radius_px, &self.rows);
+    fn add(&mut self, kernel: &Kernel, facet: &Facet, (cosine, sine): (f32, f32), [across, down]: &mut [Curves; 2]) {
+        let columns = reached(kernel.at[0], kernel.radius_px, self.size.0);
+        let rows = reached(kernel.at[1], kernel.radius_px, self.size.1);
         if columns.is_empty() || rows.is_empty() {
             return;
         }
-        let whole = match self.trim {
-            Trim::Object => true,
-            Trim::Triangle => false,
-            Trim::Depth(reach) => match self.all(impulse, reach, &columns, &rows) {
-                Some(false) => return,
-                all => all.is_some(),
-            },
+        let covered = match self.trim {
+            Trim::Object => Some(true),
+            Trim::Triangle => None,
+            Trim::Depth(reach) => self.level.covered((facet.plane, reach / f64::from(kernel.scale)), &columns, &rows),
         };
-        let often = (1.0 / impulse.spacing_px) as f32;
-        let radius_px = impulse.radius_px;
-        let Scratch { across, down, covers } = scratch;
-        let first = columns.start as f64 + 0.5 - impulse.at.x;
-        let wide = columns.len().next_multiple_of(LANES);
-        Line { first, radius_px, waves: -sine * often, phase: 0.0, weight: 1.0 }.fill(lines(across, wide));
-        let first = rows.start as f64 + 0.5 - impulse.at.y;
-        let (phase, weight) = (turns(impulse.phase), impulse.factor as f32);
-        let high = rows.len().next_multiple_of(LANES);
-        Line { first, radius_px, waves: cosine * often, phase, weight }.fill(lines(down, high));
-        let left = columns.start - self.columns.start;
-        let [cosines, sines, squares] = across;
-        let curves = (&cosines[..wide], &sines[..wide], &squares[..wide]);
-        for (k, y) in rows.enumerate() {
-            let from = (y - self.rows.start) * STRIDE + left;
-            let (value, power) = (&mut self.value[from..from + wide], &mut self.power[from..from + wide]);
-            let (a, b, c) = (down[0][k], down[1][k], down[2][k] * 0.5);
-            if whole {
-                add_row(value, power, curves, (a, b, c), |_| 1.0);
-                continue;
-            }
-            match self.trim {
-                Trim::Depth(reach) => {
-                    let inverse = &self.inverse[from..from + wide];
-                    let scale = impulse.depth * self.shown.focal_px / radius_px;
-                    let level = impulse.plane.y * (y as f64 + 0.5) + impulse.plane.z;
-                    let level = level + impulse.plane.x * (columns.start as f64 + 0.5);
-                    near(&mut covers[..wide], inverse, (impulse.plane.x, level), (scale, reach));
-                }
-                Trim::Object | Trim::Triangle => {
-                    let covered = trimmed(self.shown, self.trim, impulse, y, columns.clone());
-                    covers.iter_mut().zip(covered).for_each(|(cover, covered)| *cover = covered);
+        if covered == Some(false) {
+            return;
+        }
+        let (inverse, often) = (1.0 / kernel.radius_px, self.waves / kernel.radius_px);
+        let first = columns.start as f32 + 0.5 - kernel.at[0];
+        Line { first, inverse, waves: -sine * often, phase: 0.0, weight: 1.0 }.fill(across, columns.len());
+        let first = rows.start as f32 + 0.5 - kernel.at[1];
+        let (phase, weight) = (kernel.phase, kernel.factor);
+        Line { first, inverse, waves: cosine * often, phase, weight }.fill(down, rows.len());
+        let near = match self.trim {
+            Trim::Depth(reach) => Some(Near::new(facet.plane, kernel.scale, reach)),
+            Trim::Object | Trim::Triangle => None,
+        };
+        for lump in 0..columns.len().div_ceil(LANES) {
+            let left = columns.start + lump * LANES;
+            let block = Block { left, rows: rows.clone(), across: across.each_ref().map(|line| line[lump]), down };
+            let (shown, (x, y)) = (self.shown, (self.corner.0 + left, self.corner.1));
+            match &near {
+                _ if covered.is_some() => block.add(self.sums, |_| [1.0; LANES]),
+                Some(near) => block.add(
+                    self.sums,
+                    #[inline(always)]
+                    |row| near.covers((x, y + row), shown.lanes(shown.inverse, (x, y + row))),
+                ),
+                None => {
+                    let own = |triangle: u32| f32::from(u8::from(triangle == facet.triangle));
+                    block.add(self.sums, |row| shown.lanes(shown.triangle, (x, y + row)).map(own));
                 }
             }
-            let covers = &covers[..wide];
-            add_row(value, power, curves, (a, b, c), |i| covers[i]);
         }
     }
 
-    /// Makes the noise and its variance of the sums.
+    /// Writes the noise and its variance that the sums make.
     #[inline(always)]
-    fn finish(&mut self, scale: &Scale) {
-        for (k, y) in self.rows.clone().enumerate() {
-            let own = k * STRIDE..k * STRIDE + self.columns.len();
-            let from = y * self.shown.size_px.0;
-            let triangle = &self.shown.triangle[from + self.columns.start..from + self.columns.end];
-            let sums = self.value[own.clone()].iter_mut().zip(&mut self.power[own]);
-            for ((value, power), triangle) in sums.zip(triangle) {
-                let (own, found) = (*triangle != u32::MAX, scale.of(*value, *power));
-                *value = if own { found.0 } else { 0.0 };
-                *power = if own { found.1 } else { 0.0 };
+    fn finish(&self, scale: &Scale, out: &mut [[&mut [f32]; 2]]) {
+        let sums = self.sums.value.chunks(STRIDE).zip(self.sums.power.chunks(STRIDE));
+        for (row, ([values, shares], (value, power))) in out.iter_mut().zip(sums).enumerate() {
+            let first = (self.corner.1 + row) * self.shown.size_px.0 + self.corner.0;
+            let triangles = &self.shown.triangle[first..first + self.size.0];
+            for (x, triangle) in triangles.iter().enumerate() {
+                let (own, found) = (*triangle != u32::MAX, scale.of(value[x], power[x]));
+                values[x] = if own { found.0 } else { 0.0 };
+                shares[x] = if own { found.1 } else { 0.0 };
             }
         }
     }
+}
 
-    /// Whether all of the layer here is within the reach of a kernel, or none of it; `None` if that differs.
+/// Some columns of a kernel.
+struct Block<'a> {
+    /// Its first column, and its rows.
+    left: usize,
+    rows: Range<usize>,
+    /// The kernel's curves along a row, only here, and down a column.
+    across: [[f32; LANES]; 3],
+    down: &'a Curves,
+}
+
+impl Block<'_> {
+    /// Adds it, so much of it as covers each pixel of a row.
     #[inline(always)]
-    fn all(&self, impulse: &Impulse, reach: f64, columns: &Range<usize>, rows: &Range<usize>) -> Option<bool> {
-        let plane = self.level.plane - impulse.plane;
-        let corner = DVec2::new(self.columns.start as f64 + 0.5, self.rows.start as f64 + 0.5);
-        let first = plane.x * corner.x + plane.y * corner.y + plane.z;
-        let own = |range: &Range<usize>, from: usize| range.start - from..range.end - from;
-        let (columns, rows) = (own(columns, self.columns.start), own(rows, self.rows.start));
-        let scale = impulse.depth * self.shown.focal_px / impulse.radius_px;
-        self.level.within((first, plane.truncate()), &columns, &rows, reach / scale)
-    }
-}
-
-/// What a kernel is made of before it is added, one after the other in the same place.
-struct Scratch {
-    /// Its curves along a row and down a column; see `Line::fill`.
-    across: [[f32; STRIDE]; 3],
-    down: [[f32; STRIDE]; 3],
-    /// How much of a row it covers.
-    covers: [f32; STRIDE],
-}
-
-impl Default for Scratch {
-    fn default() -> Scratch {
-        Scratch { across: [[0.0; STRIDE]; 3], down: [[0.0; STRIDE]; 3], covers: [0.0; STRIDE] }
-    }
-}
-
-/// The beginnings of three lines.
-#[inline(always)]
-fn lines([a, b, c]: &mut [[f32; STRIDE]; 3], count: usize) -> Curves<'_> {
-    [&mut a[..count], &mut b[..count], &mut c[..count]]
-}
-
-/// Adds a row of a kernel, so much of it as covers each pixel.
-#[inline(always)]
-fn add_row(
-    value: &mut [f32],
-    power: &mut [f32],
-    (cosines, sines, squares): (&[f32], &[f32], &[f32]),
-    (a, b, c): (f32, f32, f32),
-    covers: impl Fn(usize) -> f32,
-) {
-    let cells = value.as_chunks_mut::<LANES>().0.iter_mut().zip(power.as_chunks_mut::<LANES>().0);
-    let curves =
-        cosines.as_chunks::<LANES>().0.iter().zip(sines.as_chunks::<LANES>().0).zip(squares.as_chunks::<LANES>().0);
-    for (lump, ((value, power), ((cosines, sines), squares))) in cells.zip(curves).enumerate() {
-        // Copies, so that the compiler sees that none overlaps another.
-        let (mut values, mut powers, cosines, sines, squares) = (*value, *power, *cosines, *sines, *squares);
-        for k in 0..LANES {
-            let cover = covers(lump * LANES + k);
-            values[k] += (a * cosines[k] - b * sines[k]) * cover;
-            powers[k] += c * squares[k] * (cover * cover);
+    fn add(&self, sums: &mut Sums, covers: impl Fn(usize) -> [f32; LANES]) {
+        let first = self.rows.start * STRIDE + self.left;
+        let rows = sums.value[first..].chunks_mut(STRIDE).zip(sums.power[first..].chunks_mut(STRIDE));
+        let ([cosines, sines, squares], down) = (self.across, self.down.each_ref().map(|line| line.as_flattened()));
+        for (k, (value, power)) in rows.take(self.rows.len()).enumerate() {
+            let (Some(values), Some(powers)) = (value.first_chunk_mut(), power.first_chunk_mut()) else { return };
+            let ([a, b, c], covers) = (down.map(|line| line[k]), covers(self.rows.start + k));
+            // Copies, so that the compiler sees that none overlaps another.
+            let ([mut value, mut power], c): ([[f32; LANES]; 2], f32) = ([*values, *powers], 0.5 * c);
+            for k in 0..LANES {
+                let cover = covers[k];
+                value[k] = fused(b * cover, -sines[k], fused(a * cover, cosines[k], value[k]));
+                power[k] = fused(c * cover * cover, squares[k], power[k]);
+            }
+            (*values, *powers) = (value, power);
         }
-        (*value, *power) = (values, powers);
     }
 }
 
 /// How much each pixel of a row shows of a kernel, by its 1 / depth: less the farther that is from the plane of the kernel, and
-/// nothing beyond `reach`. `level` is the slope of 1 / depth of the plane along the row, and its value at the first pixel.
-#[inline(always)]
-fn near(covers: &mut [f32], inverse: &[f64], level: (f64, f64), (scale, reach): (f64, f64)) {
-    let (from, often) = (reach as f32, (1.0 / reach) as f32);
-    let lumps = covers.as_chunks_mut::<LANES>().0.iter_mut().zip(inverse.as_chunks::<LANES>().0);
-    for (lump, (covers, inverse)) in lumps.enumerate() {
-        let first = level.0 * (lump * LANES) as f64 + level.1;
-        let (mut own, inverse) = ([0.0; LANES], *inverse);
+/// nothing beyond `reach`.
+struct Near {
+    /// The plane, times `scale`.
+    plane: DVec3,
+    scale: f32,
+    reach: f32,
+    often: f32,
+}
+
+impl Near {
+    #[inline(always)]
+    fn new(plane: DVec3, scale: f32, reach: f64) -> Near {
+        Near { plane: plane * f64::from(scale), scale, reach: reach as f32, often: (1.0 / reach) as f32 }
+    }
+
+    /// Of some pixels from this one on, by the 1 / depth there.
+    #[inline(always)]
+    fn covers(&self, (x, y): (usize, usize), inverse: [f64; LANES]) -> [f32; LANES] {
+        let level = self.plane.dot(DVec3::new(x as f64 + 0.5, y as f64 + 0.5, 1.0)) as f32;
+        let (slope, mut covers) = (self.plane.x as f32, [0.0; LANES]);
         for k in 0..LANES {
-            let away = ((inverse[k] - (level.0 * k as f64 + first)).abs() * scale) as f32;
-            let x = ((away - from) * often).clamp(0.0, 1.0);
-            own[k] = 1.0 - x * x * (3.0 - 2.0 * x);
+            let away = fused(inverse[k] as f32, self.scale, -fused(slope, k as f32, level)).abs();
+            let x = ((away - self.reach) * self.often).clamp(0.0, 1.0);
+            covers[k] = 1.0 - x * x * (3.0 - 2.0 * x);
         }
-        *covers = own;
+        covers
     }
 }
 
@@ -319,46 +344,34 @@ pub fn normalized(shown: &InFrame, sums: &[[f32; 2]], overlap: f64) -> Noise {
     Noise { value, share }
 }
 
-/// The pixels of a range whose centers are nearer to a place than a distance.
-fn reached(middle: f64, radius: f64, of: &Range<usize>) -> Range<usize> {
-    let from = (middle - radius - 0.5).floor() + 1.0;
-    let to = (middle + radius - 0.5).ceil();
-    let within = |at: f64| at.clamp(of.start as f64, of.end as f64) as usize;
-    within(from)..within(to)
+/// The pixels of a tile of this length whose centers are nearer to a place than a distance.
+#[inline(always)]
+fn reached(middle: f32, radius: f32, length: usize) -> Range<usize> {
+    let within = |at: f32| at.clamp(0.0, length as f32) as usize;
+    within((middle - radius - 0.5).floor() + 1.0)..within((middle + radius - 0.5).ceil())
 }
 
 /// How much of a kernel a pixel shows.
-pub fn covers(shown: &InFrame, trim: Trim, impulse: &Impulse, (x, y): (usize, usize)) -> f32 {
-    trimmed(shown, trim, impulse, y, x..x + 1).next().unwrap_or(0.0)
-}
-
-/// How much of a kernel the pixels of a row show.
-fn trimmed(
-    shown: &InFrame,
-    trim: Trim,
-    impulse: &Impulse,
-    y: usize,
-    columns: Range<usize>,
-) -> impl Iterator<Item = f32> {
-    let row = y * shown.size_px.0;
-    let DVec3 { x: slope, y: down, z: base } = impulse.plane;
-    let first = down * (y as f64 + 0.5) + base;
-    let scale = impulse.depth * shown.focal_px / impulse.radius_px;
-    let [own] = [impulse.of[0]];
-    columns.map(move |x| match trim {
+pub fn covers(shown: &InFrame, trim: Trim, impulse: &Impulse, (x, y): (usize, usize)) -> f64 {
+    let i = y * shown.size_px.0 + x;
+    match trim {
         Trim::Object => 1.0,
-        Trim::Triangle => f32::from(u8::from(shown.triangle[row + x] == own)),
+        Trim::Triangle => f64::from(u8::from(shown.triangle[i] == impulse.of[0])),
         Trim::Depth(reach) => {
-            let away = (shown.inverse[row + x] - (slope * (x as f64 + 0.5) + first)).abs() * scale;
-            (1.0 - smoothstep(reach, 2.0 * reach, away)) as f32
+            let level = impulse.plane.dot(DVec3::new(x as f64 + 0.5, y as f64 + 0.5, 1.0));
+            let scale = impulse.depth * shown.focal_px / impulse.radius_px;
+            1.0 - smoothstep(reach, 2.0 * reach, (shown.inverse[i] - level).abs() * scale)
         }
-    })
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::base::maths::{cos, exp, sin};
+    use glam::DVec2;
+
+    use crate::layers::mesh::slots::strokes::bins::Binning;
     use crate::layers::mesh::slots::strokes::curves::EDGE;
 
     fn impulse(at: (f64, f64)) -> Impulse {
@@ -376,14 +389,19 @@ mod tests {
         }
     }
 
+    fn sum_of(shown: &InFrame, impulse: &Impulse, trim: Trim) -> Noise {
+        let mut binning = Binning::new(shown.size_px, shown.focal_px);
+        binning.extend([*impulse]);
+        sum(shown, &[binning.sorted()], (16.0, impulse.radius_px / impulse.spacing_px), trim)
+    }
+
     #[test]
     fn a_kernel_is_its_formula() {
         let (width, height) = (100, 90);
         let (inverse, triangle) = (vec![0.5; width * height], vec![0; width * height]);
-        let shown =
-            InFrame { size_px: (width, height), focal_px: 100.0, inverse: &inverse, triangle: &triangle, stop: None };
+        let shown = InFrame::new(((width, height), 100.0), &inverse, &triangle, None);
         let own = impulse((61.3, 63.9));
-        let found = sum(&shown, &[own], 16.0, Trim::Depth(0.5));
+        let found = sum_of(&shown, &own, Trim::Depth(0.5));
         let curve = |d: f64| (exp(-std::f64::consts::PI * d * d / 400.0) - EDGE) / (1.0 - EDGE);
         let variance = 16.0 * INTEGRAL * INTEGRAL / TAU;
         for y in 0..height {
@@ -407,10 +425,9 @@ mod tests {
         // e = |1/z - 1/2| * 2 * 100 / 20.
         let inverse: Vec<f64> = (0..width * height).map(|i| if i % width < 30 { 0.5 } else { 0.5 + 0.075 }).collect();
         let triangle: Vec<u32> = (0..width * height).map(|i| if i / width < 5 { u32::MAX } else { 0 }).collect();
-        let shown =
-            InFrame { size_px: (width, height), focal_px: 100.0, inverse: &inverse, triangle: &triangle, stop: None };
-        let found = sum(&shown, &[own], 16.0, Trim::Depth(0.5));
-        let all = sum(&shown, &[own], 16.0, Trim::Object);
+        let shown = InFrame::new(((width, height), 100.0), &inverse, &triangle, None);
+        let found = sum_of(&shown, &own, Trim::Depth(0.5));
+        let all = sum_of(&shown, &own, Trim::Object);
         for y in 0..height {
             let (left, right) = (y * width + 20, y * width + 35);
             assert_eq!(found.share[left], all.share[left]);

@@ -119,7 +119,7 @@ type Found = BTreeMap<[u32; 3], (DVec2, f64)>;
 fn impulses(synth: &Synth, moment: &Moment) -> Found {
     let ready = ready_of(synth);
     seen(synth, moment, |given| {
-        let found = Scene::new(ready, given).impulses(&ready.strokes.noises["a"]).unwrap().0;
+        let found = Scene::new(ready, given).impulses(&ready.strokes.noises["a"]).unwrap();
         found.into_iter().map(|impulse| (impulse.of, (impulse.at, impulse.factor))).collect()
     })
 }
