@@ -30,6 +30,8 @@ pub const COMMANDS: &[Command] = &[command(
 // What is painted over is what is seen.
 .awaiting(|_, text| text.starts_with("add "))];
 
+const NONE: &str = "no view lies on a mesh yet: :views add NAME lays one";
+
 /// What is done with views; the last four on the command line too.
 const WORDS: [&str; 8] = ["go", "take", "next", "previous", "add", "guide", "import", "balance"];
 const OF_SHELL: &[&str] = &["add", "guide", "import", "balance"];
@@ -129,7 +131,7 @@ fn side(text: &str) -> Result<usize, String> {
 
 /// Selects the view that is so many after the one that is painted on, and so it is painted on; after the last comes the first.
 fn step(state: &mut State, by: i64) -> Done {
-    let (layer, index, _) = painting::current(state).ok_or("no view lies on a mesh yet: :views add NAME lays one")?;
+    let (layer, index, _) = painting::current(state).ok_or(NONE)?;
     let technique = state.document().scene().layers[layer].technique();
     let lying = technique.lying().unwrap_or_default();
     let next = (index as i64 + by).rem_euclid(lying.len() as i64) as usize;
@@ -159,6 +161,7 @@ fn view(state: &State, layer: usize, name: Option<&str>) -> Result<(usize, Strin
         (None, None) => match state.picture.laid.filter(|(on, _)| *on == layer) {
             Some((_, index)) => index,
             None if lying.len() == 1 => 0,
+            None if lying.is_empty() => return Err(NONE.into()),
             None => return Err("which view: name it, or go to its row".into()),
         },
     };

@@ -191,6 +191,9 @@ fn the_view_that_was_selected_last_is_painted_on() {
 fn views_are_gone_through_by_a_key_and_a_far_one_makes_none_small() {
     let folder = tempfile::tempdir().unwrap();
     let mut state = opened(folder.path());
+    for line in ["views next", "views guide", "views take"] {
+        assert!(run(&mut state, line).0.contains(":views add NAME lays one"), "{line}: there is none yet");
+    }
     run(&mut state, "views add a both 8x6");
     run(&mut state, "views add b both 8x6");
     show(&mut state);
