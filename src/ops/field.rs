@@ -10,10 +10,12 @@ use serde_json::Value;
 use super::writing::Replacing;
 use super::{Context, opened::Unloaded, scene_options::SceneOptions};
 use crate::base::error::{Error, Result};
-use crate::export::field::{arrows, csv, plot, png, svg};
+use crate::base::problem::nearest;
+use crate::export::field::{PlotLook, arrows, csv, overlays_of_fields, plot, png, svg};
 use crate::files::draft::DraftFile;
 use crate::files::outputs::{self, Kind};
 use crate::files::write;
+use crate::layers::parts::vectors::VectorLook;
 use crate::render;
 use crate::scene::{Document, Scene, named};
 
@@ -28,9 +30,19 @@ pub struct Args {
     /// An arrow or a row every N pixels; without it as many arrows as fit, and a row for every pixel
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     step: Option<u32>,
+    /// What a plot shows: arrows, streamlines or colors, or several
+    #[arg(long, value_name = "WHAT", value_delimiter = ',', value_parser = overlay)]
+    show: Vec<&'static str>,
+    /// How a plot draws vectors: color=plain|direction|length|divergence|curl, length=TIMES, equal=on, longest=PX, steepest=N,
+    /// opacity=N, as :vectors in the editor
+    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',')]
+    look: Vec<String>,
     /// Leave the faint picture out of a plot
     #[arg(long)]
     no_picture: bool,
+    /// Leave the legend out of a plot
+    #[arg(long)]
+    no_legend: bool,
     /// Where to: .svg and .png are plots, .csv is x,y,dx,dy,length,degrees, - writes the table to standard output
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
@@ -44,6 +56,8 @@ pub struct Args {
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let begun = Instant::now();
     let kind = kind(&args.output)?;
+    let mut vectors = VectorLook::default();
+    args.look.iter().try_for_each(|word| vectors.set(word)).map_err(|why| Error::Usage(format!("--look: {why}")))?;
     let to_stream = args.output == Path::new("-");
     let read = Unloaded::read(&args.scene, &args.options, context)?;
     let mut guard = args.replacing.guard(&args.scene, read.document.scene(), context);
@@ -62,7 +76,8 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let every = if kind == outputs::CSV { step.unwrap_or(1) as u64 } else { u64::MAX };
     let rows = (synth.size.0 as u64).div_ceil(every) * (synth.size.1 as u64).div_ceil(every);
     let _share = opened.materials.budget.take(rows.saturating_mul(ROW), args.output.display())?;
-    let plot = || plot(&scene, &synth, step, !args.no_picture);
+    let Args { no_picture, no_legend, .. } = args;
+    let plot = || plot(&scene, &synth, &PlotLook { step, overlays: args.show.clone(), vectors, no_picture, no_legend });
     if synth.layers.iter().all(|layer| layer.fields().is_empty()) {
         context.messages.say("no layer has a vector field, so there are no arrows and no rows");
     }
@@ -87,6 +102,13 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// The overlay that a word of `--show` stands for.
+fn overlay(word: &str) -> std::result::Result<&'static str, String> {
+    let known = || overlays_of_fields().filter_map(|overlay| Some((overlay.legend?.word(), overlay.name)));
+    let found = known().find(|(own, _)| *own == word).map(|(_, name)| name);
+    found.ok_or_else(|| nearest(word, known().map(|(own, _)| own).collect::<Vec<_>>().into_iter()).unwrap_or_default())
 }
 
 fn kind(path: &Path) -> Result<Kind> {

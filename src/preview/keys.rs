@@ -35,6 +35,11 @@ const OWN: &[KeyRow] = &[
     row(PLAY, "}", "last-frame", "To the last frame"),
     row(VIEW, ",", "field-closer", "More of the field and its paths"),
     row(VIEW, ".", "field-wider", "Less of the field and its paths"),
+    row(VIEW, "*", "arrows-longer", "Longer arrows"),
+    row(VIEW, "/", "arrows-shorter", "Shorter arrows"),
+    row(VIEW, "Y", "arrows-equal", "Arrows of one length, or as long as their vectors"),
+    row(VIEW, "H", "next-coloring", "Colors of the field: plain, direction, length, divergence, curl"),
+    row(VIEW, "U", "next-opacity", "The field more transparent, or opaque again"),
     row(VIEW, "g", "view-grid", "The pixel grid, when large enough"),
     row(VIEW, "s", "view-still", "The still picture, for comparison"),
     row(VIEW, "b", "view-wipe", "Before and after, still on the left"),
@@ -87,7 +92,19 @@ const OWN: &[KeyRow] = &[
 
 /// Whether a command repeats while its key is held: steps and moves do, a switch would flicker.
 pub fn repeats(command: &str) -> bool {
-    let steps = ["frame-", "zoom-in", "zoom-out", "pan-", "wipe-", "field-", "orbit-", "dolly-", "walk-"];
+    let steps = [
+        "frame-",
+        "arrows-longer",
+        "arrows-shorter",
+        "zoom-in",
+        "zoom-out",
+        "pan-",
+        "wipe-",
+        "field-",
+        "orbit-",
+        "dolly-",
+        "walk-",
+    ];
     steps.iter().any(|step| command.starts_with(step))
 }
 
@@ -107,7 +124,7 @@ mod tests {
     fn only_what_steps_and_moves_goes_on_while_a_key_is_held() {
         let held: Vec<&str> = KEYS.iter().filter(|row| repeats(row.command)).map(|row| row.key).collect();
         let own = ["4", "6", "8", "2", "9", "3", "h", "l", "k", "j"];
-        let steps = ["[", "]", ",", ".", "(", ")", "+", "-", "Left", "Right", "Up", "Down"];
+        let steps = ["[", "]", ",", ".", "*", "/", "(", ")", "+", "-", "Left", "Right", "Up", "Down"];
         assert_eq!(held, [&steps[..], &own].concat());
     }
 }

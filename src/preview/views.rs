@@ -7,6 +7,7 @@ use std::ops::RangeInclusive;
 
 use super::keys::{KEYS, VIEW};
 use crate::layers::parts::pass::COLOR;
+use crate::layers::parts::vectors::VectorLook;
 use crate::render::overlay::overlays;
 use crate::render::shown::Shown;
 use crate::render::sight::Sight;
@@ -38,9 +39,11 @@ impl Steps {
     }
 }
 
-/// Which switches of the view are on, by their commands.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// Which switches of the view are on, by their commands, and how the vectors look that some of them show.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Switches {
+    /// How vectors of pixels are drawn.
+    pub vectors: VectorLook,
     on: BTreeSet<&'static str>,
     /// The overlays that lie over the pass that is shown, which comes bare, and go with it; `None` over the frame.
     over: Option<BTreeSet<&'static str>>,
@@ -48,7 +51,7 @@ pub struct Switches {
 
 impl Default for Switches {
     fn default() -> Self {
-        Switches { on: ON_AT_FIRST.into(), over: None }
+        Switches { vectors: VectorLook::default(), on: ON_AT_FIRST.into(), over: None }
     }
 }
 
@@ -71,8 +74,12 @@ impl Switches {
         self.over.as_ref().is_some_and(|over| over.contains(name))
     }
 
-    /// Takes a command that sets a switch, or turns it over; returns it as it is sent to windows, if it is one.
+    /// Takes a command that sets a switch, or turns it over, or sets how vectors look; returns it as it is sent to windows, if
+    /// it is one.
     pub fn take(&mut self, command: &str) -> Option<String> {
+        if self.vectors.take(command) {
+            return Some(self.vectors.command());
+        }
         let (name, wanted) = wanted(command);
         self.set(name, wanted).map(|on| set(name, on))
     }
@@ -81,7 +88,9 @@ impl Switches {
     pub fn changed(&self) -> impl Iterator<Item = String> {
         let at_first = |name: &&'static str| ON_AT_FIRST.contains(name);
         let off = ON_AT_FIRST.into_iter().filter(|name| !self.on.contains(name)).map(|name| set(name, false));
-        off.chain(self.on.iter().filter(move |name| !at_first(name)).map(|name| set(name, true)))
+        let on = self.on.iter().filter(move |name| !at_first(name)).map(|name| set(name, true));
+        let vectors = (self.vectors != VectorLook::default()).then(|| self.vectors.command());
+        off.chain(on).chain(vectors)
     }
 
     /// Turns a switch on or off, or over if `wanted` is `None`; returns what it is then. `None` if there is no such switch.
@@ -178,9 +187,11 @@ impl Views {
         let compared = (*compared != before.shown.compared).then(|| show_compared(compared.as_deref()));
         let muted = (*muted != before.shown.muted).then(|| show_muted(muted));
         let sight = (*sight != before.shown.sight).then(|| show_sight(sight.as_ref()));
+        let vectors = (own.vectors != other.vectors).then(|| own.vectors.command());
         let switches = rows().filter(differs).map(|name| set(name, own.on.contains(name)));
         let over = rows().filter(over).map(|name| set(name, own.is_over_pass(name)));
-        bare.into_iter().chain(switches).chain(pass).chain(over).chain(muted).chain(compared).chain(sight).collect()
+        let switches = bare.into_iter().chain(switches).chain(vectors).chain(pass).chain(over);
+        switches.chain(muted).chain(compared).chain(sight).collect()
     }
 
     /// Takes what is in force at the other end; returns the commands that lead there. A window that was zoomed already keeps
@@ -207,9 +218,10 @@ pub fn wanted(command: &str) -> (&str, Option<bool>) {
     }
 }
 
-/// The command that sets a switch to what it is; `None` if there is no such switch.
-pub fn setting(name: &str, switches: &Switches) -> Option<String> {
-    switch(name).map(|name| set(name, switches.is_on(name)))
+/// The command that sets what another has set to what it is now; `None` if it set nothing that all windows show alike.
+pub fn setting(command: &str, switches: &Switches) -> Option<String> {
+    let of_vectors = switches.vectors.clone().take(command).then(|| switches.vectors.command());
+    of_vectors.or_else(|| switch(command).map(|name| set(name, switches.is_on(name))))
 }
 
 /// A command that sets a switch.
@@ -259,7 +271,9 @@ pub fn shows_otherwise(shown: &mut Shown, command: &str) -> bool {
 /// Whether a command sets what all windows show alike, a switch or the pass, and does nothing else: any window may ask for
 /// it.
 pub(super) fn is_for_all(command: &str) -> bool {
-    pass_in(command).is_some() || matches!(wanted(command), (name, Some(_)) if switch(name).is_some())
+    pass_in(command).is_some()
+        || VectorLook::default().take(command) && command.contains(' ')
+        || matches!(wanted(command), (name, Some(_)) if switch(name).is_some())
 }
 
 fn is_overlay(name: &str) -> bool {
@@ -286,7 +300,12 @@ mod tests {
     #[test]
     fn only_what_is_in_force_is_listed() {
         const PAINTING: &str = r#"sight {"painting":{"layer":0,"picture":2,"share":0.5}}"#;
-        let table: [(&[&str], &[&str]); 19] = [
+        let table: [(&[&str], &[&str]); 21] = [
+            (
+                &["arrows-equal", "view-grid", "next-coloring"],
+                &["view-grid on", "vectors default color=direction equal=on"],
+            ),
+            (&["vectors length=2", "pass depth", "vectors default"], &["pass depth"]),
             (&["view-field", "pass depth", "view-paths"], &["view-field on", "pass depth", "view-paths on"]),
             (&["view-field", "pass depth", "view-field", "pass color"], &["view-field on"]),
             (&["pass depth", "view-grid", "pass normal:face"], &["view-grid on", "pass normal:face"]),

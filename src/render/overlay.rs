@@ -5,13 +5,14 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::DVec2;
-use kurbo::Point;
+use kurbo::{Point, Vec2};
 
 use super::Synth;
 use super::stage::Group;
 use crate::base::pointer::Pointer;
 use crate::layers::parts::marks::{Hit, Mark, Overlay, View, When};
 use crate::layers::parts::moment::{Columns, Moment};
+use crate::layers::parts::vectors::{Reach, VectorLook};
 use crate::layers::ready::Ready;
 use crate::layers::space::hidden::Depths;
 use crate::layers::timeline::Wrap;
@@ -45,8 +46,8 @@ pub fn times(now: f64, wrap: Wrap) -> Vec<f64> {
 /// The marks of a scene, from bottom to top. Marks that need the synthesis are left out without it.
 pub fn overlay(scene: &Scene, synth: Option<&Synth>, view: &View) -> Vec<Mark> {
     let of_pixels = overlays().any(|overlay| overlay.when == When::Synthesis && view.shows(overlay.name));
-    let longest_px = synth.filter(|_| of_pixels).map_or(0.0, longest);
-    let view = View { longest_px, ..view.clone() };
+    let reach = synth.filter(|_| of_pixels).map_or(Reach::default(), |synth| reach(synth, &view.vectors));
+    let view = View { reach, ..view.clone() };
     let t = view.times.first().copied().unwrap_or(0.0);
     let synth = synth.map(|synth| (synth, synth.moment(t)));
     let nearest = synth.as_ref().map(|(synth, moment)| nearest(synth, moment, &view)).unwrap_or_default();
@@ -104,10 +105,20 @@ fn collected(path: String, mark: Mark, view: &View) -> Mark {
     Mark { path, selected, ..mark }
 }
 
-/// The longest vector of a pixel in the scene, in pixels.
-pub fn longest(synth: &Synth) -> f64 {
-    let fields = synth.layers.iter().flat_map(|layer| layer.fields());
-    fields.map(|field| field.longest()).fold(0.0, f64::max)
+/// What is drawn as the longest arrow and in the fullest color: what the look says, else the most that the scene has.
+pub fn reach(synth: &Synth, look: &VectorLook) -> Reach {
+    let fields = || synth.layers.iter().flat_map(|layer| layer.fields());
+    let longest = || fields().map(|field| field.longest()).fold(0.0, f64::max);
+    let steepest = |slope| fields().map(|field| field.steepest(slope)).fold(0.0, f64::max);
+    let slope = look.color.slope().map(|slope| look.steepest.unwrap_or_else(|| steepest(slope)));
+    Reach { longest_px: look.longest_px.unwrap_or_else(longest), steepest: slope.unwrap_or(0.0) }
+}
+
+/// The jump vector of the pixel at a place in the picture: that of the topmost field there.
+pub fn jump_at(synth: &Synth, at: Point) -> Option<Vec2> {
+    let pixel = (at.x >= 0.0 && at.y >= 0.0).then_some((at.x as usize, at.y as usize))?;
+    let fields = synth.layers.iter().rev().flat_map(|layer| layer.fields().into_iter().rev());
+    fields.filter_map(|field| field.at(pixel)).next()
 }
 
 /// What is at a place, in pixels of the picture: the nearest thing within `reach_px`, otherwise the topmost area that
@@ -216,6 +227,33 @@ mod tests {
             let hit = pick(&scene, Point::new(x, y), 4.0);
             assert_eq!(hit.as_ref().map(|hit| hit.path.as_str()), expected, "{x} {y}");
             assert!(hit.is_none_or(|hit| hit.cell.is_empty() != hit.path.contains("motion")), "{x} {y}");
+        }
+    }
+
+    #[test]
+    fn the_topmost_zone_under_the_pointer_gives_the_jump() {
+        use crate::base::picture::Picture;
+        use crate::layers::parts::materials::Materials;
+        let zone = |name: &str, x: u32, jump: u32| {
+            format!(
+                r#"{{ "name": "{name}", "outline": {{"kind": "rectangle", "x": {x}, "y": 2, "width": 4, "height": 4}},
+                    "motion": [{{"tool": "translate", "by": [{jump}, 0]}}]}}"#
+            )
+        };
+        let scene = format!(
+            r#"{{ "plica": 1, "images": {{"a": {{"path": "a.png"}}}}, "layers": [{{ "kind": "picture", "name": "l", "image": "a",
+              "zones": [{}, {}]}}]}}"#,
+            zone("below", 1, 3),
+            zone("above", 4, 5)
+        );
+        let scene = serde_json::from_str(&scene).unwrap();
+        let picture = Arc::new(Picture::filled(16, 16, [1.0; 4]));
+        let materials = Materials { pictures: [("a".to_owned(), picture)].into(), ..Materials::default() };
+        let synth = crate::render::synth(&scene, &materials, None).unwrap();
+        let table =
+            [(1.5, 2.0, Some(3.0)), (4.9, 3.0, Some(5.0)), (0.9, 3.0, None), (-1.0, 3.0, None), (5.0, 6.0, None)];
+        for (x, y, expected) in table {
+            assert_eq!(jump_at(&synth, Point::new(x, y)).map(|jump| jump.x), expected, "{x} {y}");
         }
     }
 }

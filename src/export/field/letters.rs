@@ -11,7 +11,7 @@ const STEP: f64 = 1.55;
 const ADVANCE: f64 = 6.0;
 
 /// A letter and its strokes: pairs of digits x, y; a space begins another stroke.
-const LETTERS: [(char, &str); 21] = [
+const LETTERS: [(char, &str); 28] = [
     ('0', "103041453616050110"),
     ('1', "112026 1636"),
     ('2', "01103041420646"),
@@ -23,17 +23,29 @@ const LETTERS: [(char, &str); 21] = [
     ('8', "103041423313020110 1304051636454433"),
     ('9', "43130201103041453616"),
     ('.', "1616"),
+    ('-', "1434"),
     ('c', "4332120305163645"),
+    ('d', "4046 4332120305163645"),
     ('e', "04444332120305163645"),
+    ('g', "4247381807 4332120305163645"),
+    ('h', "0006 0312324346"),
     ('i', "2226 2020"),
     ('j', "22271808 2020"),
+    ('l', "2026"),
     ('m', "0206 03122326 23324346"),
+    ('n', "0206 0312324346"),
     ('p', "0208 0312324345361605"),
     ('r', "0206 031232"),
     ('t', "20253646 1232"),
     ('u', "0205163645 4246"),
+    ('v', "022642"),
     ('x', "0246 4206"),
 ];
+
+/// How wide a text is.
+pub fn width(text: &str) -> f64 {
+    text.chars().count() as f64 * ADVANCE * STEP
+}
 
 /// Writes `text` from `at` on, the left end of its base line. Letters that are not in the table are left out.
 pub fn write(text: &str, at: Point, color: [u8; 4], marks: &mut Vec<PlotMark>) {

@@ -1,12 +1,13 @@
 //! Vector fields as plots and tables. A plot is a list of strokes and fills that the SVG and the PNG both only draw, so
 //! that they look the same; letters are strokes too, and need no font.
 
-use kurbo::{Point, Rect};
+use kurbo::{Point, Rect, Vec2};
 
 use crate::base::pixels::Frame;
-use crate::layers::parts::marks::{self, InPlots, Shape, View};
+use crate::layers::parts::marks::{InPlots, Mark, Overlay, Shape, View};
 use crate::layers::parts::readout::VectorField;
-use crate::render::overlay::{overlay, overlays};
+use crate::layers::parts::vectors::{Coloring, VectorLook};
+use crate::render::overlay::{overlay, overlays, reach};
 use crate::render::{Synth, cpu};
 use crate::scene::Scene;
 
@@ -32,6 +33,10 @@ use strokes::{dot, draw_arrow, fill};
 const LONG: f64 = 900.0;
 /// Arrows along the longer side, unless a step is given.
 const ARROWS: f64 = 42.0;
+/// How long arrows are, in times of their distance.
+const LONGER: f64 = 1.4;
+/// Squares of color between two arrows.
+const CELLS: f64 = 4.0;
 /// Around the picture.
 const MARGIN: f64 = 14.0;
 /// Below the picture, for the legend.
@@ -61,33 +66,72 @@ fn arrows_of(field: &VectorField, step: usize) -> Vec<Arrow> {
     arrows
 }
 
-/// Plots the field of `scene`, whose synthesis is `synth`: an arrow every `step` pixels, as many as fit without it. The
-/// plot shows the zones with a little around them; `picture` lays them over what they move.
-pub fn plot(scene: &Scene, synth: &Synth, step: Option<usize>, picture: bool) -> Plot {
+/// What a plot shows.
+#[derive(Clone, Debug, Default)]
+pub struct PlotLook {
+    /// An arrow every so many pixels; as many as fit without it.
+    pub step: Option<usize>,
+    /// The overlays that show the field, by their names; arrows if there are none.
+    pub overlays: Vec<&'static str>,
+    /// How vectors are drawn. Their colors tell at least the direction.
+    pub vectors: VectorLook,
+    /// Whether the picture is left out beneath.
+    pub no_picture: bool,
+    /// Whether the legend is left out below.
+    pub no_legend: bool,
+}
+
+/// The overlays that plots can show a field by.
+pub fn overlays_of_fields() -> impl Iterator<Item = &'static Overlay> {
+    overlays().filter(|overlay| overlay.in_plots == Some(InPlots::Field))
+}
+
+/// Plots the field of `scene`, whose synthesis is `synth`. The plot shows the zones with a little around them, over what they
+/// move.
+pub fn plot(scene: &Scene, synth: &Synth, look: &PlotLook) -> Plot {
     let shown = shown(synth);
     let long = shown.width().max(shown.height());
     let scale = (LONG / long).clamp(1.0, 16.0);
-    let step = step.unwrap_or((long / ARROWS).round().max(1.0) as usize);
+    let step = look.step.unwrap_or((long / ARROWS).round().max(1.0) as usize);
     let frame = Rect::new(MARGIN, MARGIN, MARGIN + shown.width() * scale, MARGIN + shown.height() * scale);
-    let arrows = arrows(synth, step);
-    let longest = arrows.iter().map(|arrow| arrow.vector().hypot2().sqrt()).fold(0.0, f64::max);
-    // The longest arrow reaches a little beyond its neighbor.
-    let stretch = if longest > 0.0 { 1.4 * step as f64 * scale / longest } else { 1.0 };
-    let plot_from_image = |p: Point| frame.origin() + (p - shown.origin()) * scale;
+    let view = view(synth, look, step as f64);
+    let longest_px = view.reach.longest_px;
 
-    let mut marks = marks_of(scene, InPlots::Beneath, &plot_from_image);
-    for arrow in &arrows {
-        draw_arrow(plot_from_image(arrow.at), arrow.vector() * stretch, step as f64 * scale, &mut marks);
-    }
-    marks.extend(marks_of(scene, InPlots::Above, &plot_from_image));
-    let height = frame.y1 + LEGEND;
-    let width = (frame.x1 + MARGIN).max(360.0);
+    let origin = frame.origin() - shown.origin().to_vec2() * scale;
+    let mut plotter = Plotter { origin, scale, room: step as f64 * scale, marks: Vec::new() };
+    plotter.draw(&overlay(scene, None, &shown_at(InPlots::Beneath)), false);
+    plotter.draw(&overlay(scene, Some(synth), &view), true);
+    plotter.draw(&overlay(scene, None, &shown_at(InPlots::Above)), false);
+    let mut marks = plotter.marks;
+    let height = frame.y1 + if look.no_legend { MARGIN } else { LEGEND };
+    let width = if look.no_legend { frame.x1 + MARGIN } else { (frame.x1 + MARGIN).max(360.0) };
     marks.extend(margins(frame, Rect::new(0.0, 0.0, width, height)));
-    legend::legend(Point::new(MARGIN, frame.y1 + LEGEND / 2.0), stretch, longest, scale, &mut marks);
-    let title =
-        format!("Vector field: {} arrows, one every {step} px; the longest jump is {longest:.2} px", arrows.len());
-    let picture = picture.then(|| (part(synth, shown), frame));
+    if !look.no_legend {
+        legend::legend(Point::new(MARGIN, frame.y1 + LEGEND / 2.0), &view, scale, &mut marks);
+    }
+    let title = format!("Vector field, every {step} px; the longest jump is {longest_px:.2} px");
+    let picture = (!look.no_picture).then(|| (part(synth, shown), frame));
     Plot { width, height, picture, marks, title }
+}
+
+/// How the field is shown, with marks so many pixels apart.
+fn view(synth: &Synth, look: &PlotLook, spacing_px: f64) -> View {
+    let mut vectors = look.vectors.clone();
+    let reach = reach(synth, &vectors);
+    // The longest arrow reaches a little beyond its neighbor, also where it is longer than its vector then.
+    let short = if reach.longest_px > 0.0 { (spacing_px / reach.longest_px).max(1.0) } else { 1.0 };
+    vectors.length *= LONGER * if vectors.equal { 1.0 } else { short };
+    if vectors.color == Coloring::Plain {
+        vectors.color = Coloring::Direction;
+    }
+    let arrows = overlays_of_fields().map(|overlay| overlay.name).take(1);
+    let shown = if look.overlays.is_empty() { arrows.collect() } else { look.overlays.iter().copied().collect() };
+    View { shown, spacing_px, cell_px: (spacing_px / CELLS).max(1.0), vectors, reach, ..View::default() }
+}
+
+fn shown_at(place: InPlots) -> View {
+    let shown = overlays().filter(|overlay| overlay.in_plots == Some(place)).map(|overlay| overlay.name);
+    View { shown: shown.collect(), ..View::default() }
 }
 
 /// The part of the picture that the plot shows: the zones and a little around them, in whole pixels.
@@ -117,26 +161,55 @@ fn margins(frame: Rect, all: Rect) -> impl Iterator<Item = PlotMark> {
         Rect::new(all.x0, frame.y0, frame.x0, frame.y1),
         Rect::new(frame.x1, frame.y0, all.x1, frame.y1),
     ];
-    let corners = |r: Rect| vec![r.origin(), (r.x1, r.y0).into(), (r.x1, r.y1).into(), (r.x0, r.y1).into()];
     sides.into_iter().map(move |side| fill(corners(side), [255; 4]))
 }
 
-/// What the techniques want to be drawn there, in the look that it has everywhere.
-fn marks_of(scene: &Scene, place: InPlots, plot_from_image: &impl Fn(Point) -> Point) -> Vec<PlotMark> {
-    let shown = overlays().filter(|overlay| overlay.in_plots == Some(place)).map(|overlay| overlay.name);
-    let view = View::of(&shown.collect::<Vec<_>>());
-    let mark = |mark: marks::Mark| {
-        let look = mark.look;
-        let dash = look.dash_px.map(|(on, off)| (f64::from(on), f64::from(off)));
-        match mark.shape {
-            Shape::Line { points, closed } => {
-                let points = points.into_iter().map(plot_from_image).collect();
-                Some(PlotMark { points, closed, stroke: Some(look.width_px.into()), color: look.color, dash })
+fn corners(r: Rect) -> Vec<Point> {
+    vec![r.origin(), (r.x1, r.y0).into(), (r.x1, r.y1).into(), (r.x0, r.y1).into()]
+}
+
+/// Draws marks, in the look that they have everywhere.
+struct Plotter {
+    /// Where the corner of the picture would be.
+    origin: Point,
+    /// Pixels of the plot a pixel of the picture.
+    scale: f64,
+    /// The distance of arrows, in pixels of the plot.
+    room: f64,
+    marks: Vec<PlotMark>,
+}
+
+impl Plotter {
+    fn place(&self, at: Point) -> Point {
+        self.origin + at.to_vec2() * self.scale
+    }
+
+    /// Draws marks of the document, or of the field, whose arrows say more than those of anchors.
+    fn draw(&mut self, marks: &[Mark], is_field: bool) {
+        for mark in marks {
+            let (look, color) = (mark.look, mark.color());
+            let dash = look.dash_px.map(|(on, off)| (f64::from(on), f64::from(off)));
+            match &mark.shape {
+                Shape::Line { points, closed } => {
+                    let points = points.iter().map(|&at| self.place(at)).collect();
+                    let stroke = Some(look.width_px.into());
+                    self.marks.push(PlotMark { points, closed: *closed, stroke, color, dash });
+                }
+                Shape::Dot(at) => {
+                    let points = dot(self.place(*at), look.dot, f64::from(look.dot_px) * 0.8);
+                    self.marks.push(fill(points, color));
+                }
+                Shape::Cell(at, side) => {
+                    // On whole pixels, so that neighbors meet without a seam.
+                    let [a, b] = [-0.5, 0.5].map(|half| self.place(*at + Vec2::new(side * half, side * half)).round());
+                    self.marks.push(fill(corners(Rect::from_points(a, b)), color));
+                }
+                Shape::Arrow(from, to) if is_field => {
+                    let (at, vector) = (self.place(*from), (*to - *from) * self.scale);
+                    draw_arrow(at, vector, (self.room, color), &mut self.marks);
+                }
+                Shape::Fill(_) | Shape::Arrow(..) | Shape::Label(..) => {}
             }
-            Shape::Dot(at) => Some(fill(dot(plot_from_image(at), look.dot, f64::from(look.dot_px) * 0.8), look.color)),
-            // The arrows of the field say more.
-            Shape::Fill(_) | Shape::Arrow(..) | Shape::Label(..) | Shape::Cell(..) => None,
         }
-    };
-    overlay(scene, None, &view).into_iter().filter_map(mark).collect()
+    }
 }

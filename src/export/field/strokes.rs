@@ -3,7 +3,6 @@
 use kurbo::{Point, Vec2};
 
 use crate::base::maths::{TAU, atan2, cos, sin};
-use crate::base::oklab::hue;
 use crate::layers::parts::marks::Dot;
 
 /// A stroke or a fill, in pixels of the plot.
@@ -44,16 +43,14 @@ pub fn line(points: Vec<Point>, width: f64, color: [u8; 4]) -> PlotMark {
     PlotMark { points, closed: false, stroke: Some(width), color, dash: None }
 }
 
-/// An arrow with its tail at `at`, colored by its direction; a dot where there is no jump. `room` is the distance of
-/// arrows, which bounds how heavy they look.
-pub fn draw_arrow(at: Point, vector: Vec2, room: f64, marks: &mut Vec<PlotMark>) {
+/// An arrow with its tail at `at`; a dot where there is no jump. `room` is the distance of arrows, which bounds how heavy they
+/// look.
+pub fn draw_arrow(at: Point, vector: Vec2, (room, color): (f64, [u8; 4]), marks: &mut Vec<PlotMark>) {
     let length = vector.hypot2().sqrt();
     if length < 0.75 {
         marks.push(fill(dot(at, Dot::Disc, 0.9), [120, 126, 136, 200]));
         return;
     }
-    let [r, g, b] = hue(degrees(vector) / 360.0);
-    let color = [r, g, b, 255];
     let (along, across) = (vector / length, Vec2::new(-vector.y, vector.x) / length);
     let width = (room * 0.075).clamp(0.8, 2.2);
     let head = (width * 4.2).min(length * 0.6);

@@ -37,7 +37,7 @@ fn the_table_has_every_pixel_of_the_lattice() {
 fn the_svg_is_well_formed() {
     let (scene, synth) = scene();
     for picture in [true, false] {
-        let text = svg(&plot(&scene, &synth, None, picture)).unwrap();
+        let text = svg(&plot(&scene, &synth, &PlotLook { no_picture: !picture, ..PlotLook::default() })).unwrap();
         assert_eq!(text.matches("<image").count(), usize::from(picture));
         let encoded = text.split_once("image/png;base64,").map(|(_, rest)| rest.split('"').next().unwrap());
         let within = encoded.map(|text| image::load_from_memory(&STANDARD.decode(text).unwrap()).unwrap());
@@ -61,12 +61,40 @@ fn the_svg_is_well_formed() {
 #[test]
 fn the_png_shows_arrows_and_picture() {
     let (scene, synth) = scene();
-    let plot = plot(&scene, &synth, Some(2), true);
+    let plot = plot(&scene, &synth, &PlotLook { step: Some(2), ..PlotLook::default() });
     let image = image::load_from_memory(&png(&plot).unwrap()).unwrap().to_rgba8();
     assert_eq!((f64::from(image.width()), f64::from(image.height())), (plot.width.ceil(), plot.height.ceil()));
     let colors: std::collections::HashSet<_> = image.pixels().map(|p| p.0).collect();
     assert!(colors.len() > 50, "{} colors", colors.len());
     assert!(plot.marks.iter().all(|m| m.points.iter().all(|p| p.is_finite())));
+}
+
+#[test]
+fn a_plot_shows_what_is_asked_for_and_colors_what_they_are_to_tell() {
+    let (scene, synth) = scene();
+    let count = |show: &[&str], look: &str, no_legend: bool| {
+        let named = |overlay: &&Overlay| overlay.legend.is_some_and(|legend| show.contains(&legend.word()));
+        let overlays = overlays_of_fields().filter(named).map(|overlay| overlay.name).collect();
+        let mut vectors = VectorLook::default();
+        vectors.set(look).unwrap();
+        let look = PlotLook { step: Some(4), overlays, vectors, no_legend, ..PlotLook::default() };
+        let plot = plot(&scene, &synth, &look);
+        let colors: std::collections::BTreeSet<_> = plot.marks.iter().map(|mark| mark.color).collect();
+        (plot.marks.len(), colors, plot.height)
+    };
+    let arrows = count(&["arrows"], "", true);
+    assert_eq!(count(&[], "", true), arrows, "arrows, unless it is told what");
+    // Ten arrows of a line and a head, or a dot; as many squares as pixels.
+    assert_eq!(count(&["colors"], "", true).0 - arrows.0, 20 * 8 - 2 * 10);
+    let (streamlines, both) = (count(&["streamlines"], "", true), count(&["arrows", "streamlines"], "", true));
+    let colors = count(&["colors"], "", true);
+    assert_eq!(arrows.0 + streamlines.0 - both.0, colors.0 - 20 * 8, "beside the field all have the same");
+    let [full, faint] = ["color=length", "color=length longest=1000"].map(|look| count(&["colors"], look, true).1);
+    assert_ne!(full, faint);
+    for look in ["", "color=curl", "equal=on"] {
+        let (with, without) = (count(&["arrows"], look, false), count(&["arrows"], look, true));
+        assert!(with.0 > without.0 && with.2 > without.2, "{look}: {with:?} {without:?}");
+    }
 }
 
 #[test]
@@ -76,7 +104,11 @@ fn nothing_reaches_out_of_the_picture() {
     json["layers"][0]["zones"][0]["outline"] =
         serde_json::json!({ "kind": "rectangle", "x": -99, "y": -99, "width": 150, "height": 115 });
     let scene = serde_json::from_value(json).unwrap();
-    let image = image::load_from_memory(&png(&plot(&scene, &synth, None, false)).unwrap()).unwrap().to_rgba8();
+    let image = image::load_from_memory(
+        &png(&plot(&scene, &synth, &PlotLook { no_picture: true, ..PlotLook::default() })).unwrap(),
+    )
+    .unwrap()
+    .to_rgba8();
     assert!((0..image.width()).all(|x| image.get_pixel(x, 5).0 == [255; 4]));
     assert!((0..image.height()).all(|y| image.get_pixel(5, y).0 == [255; 4]));
 }

@@ -8,6 +8,7 @@ pub(super) const REGIONS: &str = "view-regions";
 pub(super) const ANCHORS: &str = "view-anchors";
 pub(super) const CURVES: &str = "view-curves";
 pub(super) const FIELD: &str = "view-field";
+pub(super) const STREAMLINES: &str = "view-streamlines";
 pub(super) const WHEEL: &str = "view-wheel";
 pub(super) const PATHS: &str = "view-paths";
 pub(super) const THRESHOLDS: &str = "view-thresholds";
@@ -22,8 +23,15 @@ pub static OVERLAYS: &[Overlay] = &[
     Overlay::new(ANCHORS, "a", "Anchors and their jump vectors", When::Document).plotted(InPlots::Above),
     Overlay::new(CURVES, "c", "Curves, lassos and handles", When::Document),
     Overlay::new(LABELS, "n", "Names and numbers", When::Document).words(),
-    Overlay::new(FIELD, "v", "The vector field as arrows", When::Synthesis).explained(Legend::Arrows),
-    Overlay::new(WHEEL, "d", "The vector field as colors of directions", When::Synthesis).explained(Legend::Colors),
+    Overlay::new(FIELD, "v", "The vector field as arrows", When::Synthesis)
+        .plotted(InPlots::Field)
+        .explained(Legend::Arrows),
+    Overlay::new(STREAMLINES, "y", "The vector field as streamlines", When::Synthesis)
+        .plotted(InPlots::Field)
+        .explained(Legend::Lines),
+    Overlay::new(WHEEL, "d", "The vector field as colors", When::Synthesis)
+        .plotted(InPlots::Field)
+        .explained(Legend::Colors),
     Overlay::new(PATHS, "p", "Jump paths", When::Synthesis),
     Overlay::new(THRESHOLDS, "x", "Where jump paths meet fold regions", When::Synthesis),
     Overlay::new(SAMPLERS, "e", "Samplers, at their effective places", When::EveryFrame),
@@ -86,6 +94,7 @@ mod tests {
     use crate::layers::folding::{marks, pixel_marks};
     use crate::layers::parts::marks::{Mark, View};
     use crate::layers::parts::materials::Materials;
+    use crate::layers::parts::vectors::Reach;
     use crate::layers::ready::Making;
     use crate::layers::timeline::Wrap;
     use crate::scene::Scene;
@@ -98,8 +107,13 @@ mod tests {
         let materials = Materials { pictures: [("a".to_owned(), picture)].into(), ..Materials::default() };
         let synth = synth(layer, &Making::plain(Wrap::default(), &materials), None).unwrap();
         let drawn = |names: &[&'static str]| -> Vec<Mark> {
-            let view =
-                View { spacing_px: 4.0, cell_px: 4.0, times: vec![0.3, 0.2], longest_px: 20.0, ..View::of(names) };
+            let view = View {
+                spacing_px: 4.0,
+                cell_px: 4.0,
+                times: vec![0.3, 0.2],
+                reach: Reach { longest_px: 20.0, ..Reach::default() },
+                ..View::of(names)
+            };
             pixel_marks::marks(&synth, &view).into_iter().chain(marks::marks(layer, &view)).collect()
         };
         let all: Vec<&'static str> = OVERLAYS.iter().map(|overlay| overlay.name).collect();

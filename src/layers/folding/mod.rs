@@ -37,6 +37,7 @@ pub mod reread;
 pub mod seam;
 pub mod shared;
 pub mod starts;
+pub mod streamlines;
 pub mod synth;
 pub mod texels;
 pub mod thresholds;

@@ -1,19 +1,41 @@
-//! The marks for single pixels of zones, at a regular spacing: jump vectors as arrows and colors, jump paths, where
-//! they meet fold regions, and the samplers that move along them.
+//! The marks for single pixels of zones, at a regular spacing: jump vectors as arrows, streamlines and colors, jump paths,
+//! where they meet fold regions, and the samplers that move along them.
 
 use kurbo::{Point, Vec2};
 
 use super::field::Field;
-use super::looks::{FIELD, ONION, PATH, PATHS, RESTING, SAMPLER, SAMPLERS, THRESHOLD, THRESHOLDS, WHEEL};
+use super::looks::{FIELD, ONION, PATH, PATHS, RESTING, SAMPLER, SAMPLERS, STREAMLINES, THRESHOLD, THRESHOLDS, WHEEL};
 use super::marks::{Drawing, zone_path};
+use super::streamlines::streamlines;
 use super::synth::{Synth, ZoneSynth};
-use crate::layers::parts::marks::{Mark, Shape, VECTOR_COLORS, VECTORS, View, vector_color};
+use crate::layers::parts::marks::{Mark, Shape, VECTOR_COLORS, VECTORS, View};
+use crate::layers::parts::readout::{Slopes, slopes, vector};
+use crate::layers::parts::vectors::Coloring;
 
 /// The marks of a layer that need its synthesis.
 pub fn marks(synth: &Synth, view: &View) -> Vec<Mark> {
     let mut drawing = Drawing::new(view);
     synth.zones.iter().for_each(|zone| drawing.pixels(zone, &zone_path(zone.index)));
     drawing.marks
+}
+
+/// Points of a piece of a streamline that has one color.
+const PIECE: usize = 6;
+
+impl Field {
+    /// The pixel of the box that holds a place in it.
+    fn pixel(&self, at: Point) -> (usize, usize) {
+        ((at.x as usize).saturating_sub(self.x0), (at.y as usize).saturating_sub(self.y0))
+    }
+
+    fn jump(&self, at: Point) -> Vec2 {
+        let (i, j) = self.pixel(at);
+        vector(*self.jumps.get(i, j))
+    }
+
+    fn slopes(&self, at: Point) -> Slopes {
+        slopes((&self.inside, &self.jumps), self.pixel(at))
+    }
 }
 
 /// One pixel of a field.
@@ -55,6 +77,9 @@ impl Drawing<'_> {
         if view.shows(FIELD) {
             self.arrows(&zone.field, at);
         }
+        if view.shows(STREAMLINES) {
+            self.streamlines(&zone.field, at);
+        }
         if view.shows(PATHS) {
             self.paths(zone, at);
         }
@@ -69,17 +94,44 @@ impl Drawing<'_> {
     }
 
     fn cells(&mut self, field: &Field, at: &str) {
-        let (side, longest) = (self.view.cell_px.max(1.0), self.view.longest_px);
+        let View { vectors, reach, .. } = self.view;
+        let side = self.view.cell_px.max(1.0);
         for pixel in lattice(field, self.view.cell_px) {
-            self.add(&VECTOR_COLORS, at, Shape::Cell(pixel.at, side, vector_color(pixel.jump, longest)));
+            let tint = Some(vectors.color(pixel.jump, || field.slopes(pixel.at), *reach));
+            let mark = Mark::new(&VECTOR_COLORS, at, Shape::Cell(pixel.at, side));
+            self.marks.push(Mark { tint, strength: vectors.opacity as f32, ..mark });
         }
     }
 
     fn arrows(&mut self, field: &Field, at: &str) {
-        let scale = self.view.arrow_scale();
         for pixel in lattice(field, self.view.spacing_px) {
-            self.add(&VECTORS, at, Shape::Arrow(pixel.at, pixel.at + pixel.jump * scale));
+            let shape = Shape::Arrow(pixel.at, pixel.at + self.view.arrow(pixel.jump));
+            self.stroke(field, pixel.at, at, shape);
         }
+    }
+
+    /// Streamlines, with an arrow's head in the middle of each. One whose color tells something is drawn in pieces, each of
+    /// the color of its middle.
+    fn streamlines(&mut self, field: &Field, at: &str) {
+        let spacing = self.view.spacing_px;
+        let seeds = lattice(field, spacing).map(|pixel| pixel.at);
+        for line in streamlines(field, seeds, spacing) {
+            let piece = if self.view.vectors.color == Coloring::Plain { line.len() } else { PIECE };
+            for points in (0..line.len() - 1).step_by(piece).map(|i| &line[i..(i + piece + 1).min(line.len())]) {
+                let shape = Shape::Line { points: points.to_vec(), closed: false };
+                self.stroke(field, points[points.len() / 2], at, shape);
+            }
+            let middle = line.len() / 2;
+            self.stroke(field, line[middle], at, Shape::Arrow(line[middle.saturating_sub(PIECE / 2)], line[middle]));
+        }
+    }
+
+    /// Adds an arrow or a line of the field, in the color of the vector at a place. Over colors it would not be seen in its own.
+    fn stroke(&mut self, field: &Field, of: Point, at: &str, shape: Shape) {
+        let View { vectors, reach, .. } = self.view;
+        let tint = vectors.stroke_color(field.jump(of), || field.slopes(of), *reach);
+        let tint = tint.filter(|_| !self.view.shows(WHEEL));
+        self.marks.push(Mark { tint, strength: vectors.opacity as f32, ..Mark::new(&VECTORS, at, shape) });
     }
 
     /// The jump paths: from s = 0 to 1, and as far as the position function goes beyond.
@@ -129,6 +181,7 @@ mod tests {
     use crate::layers::folding::model::PictureLayer;
     use crate::layers::folding::synth::synth;
     use crate::layers::parts::materials::Materials;
+    use crate::layers::parts::vectors::Reach;
     use crate::layers::ready::Making;
     use crate::layers::timeline::Wrap;
 
@@ -157,8 +210,8 @@ mod tests {
         let picture = Arc::new(Picture::filled(16, 16, [1.0; 4]));
         let materials = Materials { pictures: [("a".to_owned(), picture)].into(), ..Materials::default() };
         let synth = synth(&layer, &Making::plain(Wrap::default(), &materials), None).unwrap();
-        let (spacing_px, longest_px) = (4.0, 8.0);
-        let view = View { spacing_px, cell_px: 4.0, longest_px, times: times.into(), ..View::of(&[shown]) };
+        let reach = Reach { longest_px: 8.0, ..Reach::default() };
+        let view = View { spacing_px: 4.0, cell_px: 4.0, reach, times: times.into(), ..View::of(&[shown]) };
         marks(&synth, &view).into_iter().map(|mark| (mark.look.name, mark.shape, mark.strength)).collect()
     }
 
@@ -166,7 +219,6 @@ mod tests {
     fn what_is_drawn_of_a_pixel() {
         let at = |x: f64| Point::new(x, 2.5);
         let path = Shape::Line { points: vec![at(2.5), at(10.5)], closed: false };
-        let color = vector_color(Vec2::new(8.0, 0.0), 8.0);
         for (shown, times, expected) in [
             (FIELD, &[][..], vec![("vector field", Shape::Arrow(at(2.5), at(6.5)), 1.0)]),
             (PATHS, &[], vec![("jump path", path, 1.0)]),
@@ -174,7 +226,7 @@ mod tests {
             (SAMPLERS, &[0.375], vec![("sampler", Shape::Dot(at(4.5)), 1.0)]),
             (SAMPLERS, &[0.375, 0.125], vec![("sampler", Shape::Dot(at(4.5)), 1.0)]),
             (ONION, &[0.75, 0.125], vec![("sampler", Shape::Dot(at(3.5)), 0.5), ("sampler", Shape::Dot(at(8.5)), 1.0)]),
-            (WHEEL, &[], vec![("vector field as colors", Shape::Cell(at(2.5), 4.0, color), 1.0)]),
+            (WHEEL, &[], vec![("vector field as colors", Shape::Cell(at(2.5), 4.0), 1.0)]),
         ] {
             assert_eq!(shapes(shown, times), expected, "{shown}");
         }

@@ -166,7 +166,7 @@ impl MeshMarks<'_> {
             let found = (&*depth, &*triangles);
             raster.hits(y, wanted, found, |_| (), |cell, hit, ()| backs.extend((!hit.front).then_some(columns[cell])));
             let backs = backs.into_iter().map(|x| Point::new(x as f64 + 0.5, y as f64 + 0.5));
-            backs.map(|at| Mark::new(&BACK, "", Shape::Cell(at, side as f64, BACK.color))).collect::<Vec<_>>()
+            backs.map(|at| Mark::new(&BACK, "", Shape::Cell(at, side as f64))).collect::<Vec<_>>()
         });
         cells.collect()
     }
@@ -284,7 +284,7 @@ mod tests {
         let cells = seen(FRONT, -4.0, |seen| seen.backs(4.0));
         // The square is 41 pixels wide.
         assert!((81..=121).contains(&cells.len()), "{}", cells.len());
-        assert!(cells.iter().all(|mark| matches!(mark.shape, Shape::Cell(_, 4.0, _))));
+        assert!(cells.iter().all(|mark| matches!(mark.shape, Shape::Cell(_, 4.0))));
     }
 
     #[test]

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use kurbo::{Point, Vec2};
 
-use crate::base::oklab::srgb;
+use super::vectors::{Reach, VectorLook};
 use crate::layers::space::hidden::Depths;
 
 /// An overlay: one switch of the window and of the editor's view menu.
@@ -58,9 +58,11 @@ impl Overlay {
 /// Where a plot of a vector field draws an overlay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InPlots {
-    /// Beneath the arrows of the field.
+    /// Beneath the field.
     Beneath,
-    /// Above them.
+    /// As the field itself, where it is asked for.
+    Field,
+    /// Above it.
     Above,
 }
 
@@ -71,6 +73,19 @@ pub enum Legend {
     Colors,
     /// The length of an arrow.
     Arrows,
+    /// What the color of a streamline tells, if it tells something.
+    Lines,
+}
+
+impl Legend {
+    /// What it explains.
+    pub fn word(self) -> &'static str {
+        match self {
+            Legend::Colors => "colors",
+            Legend::Arrows => "arrows",
+            Legend::Lines => "streamlines",
+        }
+    }
 }
 
 /// What the marks of an overlay depend on.
@@ -98,8 +113,10 @@ pub struct View {
     /// Scene times in [0, 1] for marks that change with every frame: the current one, then earlier ones, each drawn
     /// fainter.
     pub times: Vec<f64>,
-    /// The longest vector of a pixel in the scene, in pixels; filled in when the marks of all layers are collected.
-    pub longest_px: f64,
+    /// How vectors of pixels are drawn.
+    pub vectors: VectorLook,
+    /// What the longest arrows and the fullest colors are; filled in when the marks of all layers are collected.
+    pub reach: Reach,
     /// How near surfaces in space are that may hide marks of a layer, if marks are shown that are hidden; filled in when
     /// the marks of all layers are collected.
     pub nearest: Option<Arc<Depths>>,
@@ -119,9 +136,23 @@ impl View {
     }
 
     /// The length of a drawn arrow as a share of its vector, so that arrows do not overlap: the longest in the scene
-    /// reaches the next arrow.
+    /// reaches the next arrow, unless it is to be longer.
     pub fn arrow_scale(&self) -> f64 {
-        (self.spacing_px.max(1.0) / self.longest_px).min(1.0)
+        (self.spacing_px.max(1.0) / self.reach.longest_px).min(1.0) * self.vectors.length
+    }
+
+    /// The arrow of a vector, in pixels of the picture.
+    pub fn arrow(&self, vector: Vec2) -> Vec2 {
+        let length = vector.hypot2().sqrt();
+        if length == 0.0 {
+            return Vec2::ZERO;
+        }
+        let drawn = if self.vectors.equal {
+            self.spacing_px.max(1.0) * self.vectors.length
+        } else {
+            length.min(self.reach.longest_px) * self.arrow_scale()
+        };
+        vector * (drawn / length)
     }
 }
 
@@ -138,12 +169,31 @@ pub struct Mark {
     pub selected: bool,
     /// Opacity, multiplied by that of its color, 0 to 1.
     pub strength: f32,
+    /// Its own color in place of that of its look and of what is selected.
+    pub tint: Option<[u8; 3]>,
 }
 
 impl Mark {
     /// A mark for what is at `path`, not selected, of full strength.
     pub fn new(look: &'static Look, path: impl Into<String>, shape: Shape) -> Mark {
-        Mark { look, shape, path: path.into(), selected: false, strength: 1.0 }
+        Mark { look, shape, path: path.into(), selected: false, strength: 1.0, tint: None }
+    }
+
+    /// Its color: sRGB with straight alpha.
+    pub fn color(&self) -> [u8; 4] {
+        let of_look = self.look.color;
+        let [r, g, b, a] = match (&self.shape, self.tint) {
+            (_, Some([r, g, b])) => [r, g, b, of_look[3]],
+            (Shape::Cell(..), None) => of_look,
+            (_, None) => {
+                if self.selected {
+                    SELECTED
+                } else {
+                    of_look
+                }
+            }
+        };
+        [r, g, b, (f32::from(a) * self.strength).round() as u8]
     }
 }
 
@@ -159,8 +209,8 @@ pub enum Shape {
     },
     /// The inside of a polygon, even-odd.
     Fill(Vec<Point>),
-    /// A square with its own color around a point: center, side, sRGB with straight alpha.
-    Cell(Point, f64, [u8; 4]),
+    /// A square around a point: center and side.
+    Cell(Point, f64),
     /// A dot at a point.
     Dot(Point),
     /// An arrow; its head is at the second point.
@@ -246,21 +296,11 @@ pub const SELECTED_GROWTH: f32 = 1.6;
 /// Opacity of a [`Shape::Fill`] in the color of its look.
 pub const FILL_ALPHA: f32 = 0.16;
 
-/// Vectors of pixels as colors, by [`vector_color`], for all techniques.
+/// Vectors of pixels as colors, for all techniques.
 pub static VECTOR_COLORS: Look =
     Look::new("vector field as colors", 0, [255, 255, 255, 220], 0.0).dots(Dot::Square, 0.0).stroke("▒");
-/// Vectors of pixels as arrows, for all techniques.
+/// Vectors of pixels as arrows and streamlines, for all techniques.
 pub static VECTORS: Look = Look::new("vector field", 1, [190, 205, 220, 230], 1.0);
-
-/// The color of a vector if the longest is `longest`: its hue is the direction on the screen, and the longer it is, the
-/// lighter and the more saturated. No vector is dark gray.
-pub fn vector_color(vector: Vec2, longest: f64) -> [u8; 4] {
-    let length = vector.hypot2().sqrt();
-    let share = if longest > 0.0 { (length / longest).min(1.0) } else { 0.0 };
-    let way = if length > 0.0 { vector / length } else { Vec2::ZERO } * (0.02 + 0.12 * share);
-    let [r, g, b] = srgb([0.28 + 0.46 * share, way.x, way.y]);
-    [r, g, b, VECTOR_COLORS.color[3]]
-}
 
 /// What is at a place of the picture.
 #[derive(Clone, Debug, PartialEq)]
@@ -279,12 +319,22 @@ mod tests {
     use super::*;
 
     #[test]
-    fn colors_tell_directions_and_lengths_apart() {
-        let ways = [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0), (0.5, 0.0), (0.0, 0.0)];
-        let colors = ways.map(|way| vector_color(way.into(), 1.0));
-        for (i, color) in colors.iter().enumerate() {
-            assert!(colors[i + 1..].iter().all(|other| (0..3).any(|c| color[c].abs_diff(other[c]) > 30)), "{colors:?}");
+    fn arrows_are_as_long_as_the_look_says() {
+        for (words, vector, drawn) in [
+            ("", 40.0, 8.0),
+            ("", 10.0, 2.0),
+            ("length=2", 10.0, 4.0),
+            ("equal=on", 10.0, 8.0),
+            ("equal=on length=0.5", 1.0, 4.0),
+            ("equal=on", 0.0, 0.0),
+        ] {
+            let mut vectors = VectorLook::default();
+            vectors.set(words).unwrap();
+            let reach = Reach { longest_px: 40.0, ..Reach::default() };
+            let view = View { spacing_px: 8.0, vectors, reach, ..View::default() };
+            assert_eq!(view.arrow(Vec2::new(0.0, vector)), Vec2::new(0.0, drawn), "{words} {vector}");
+            let short = View { reach: Reach { longest_px: 4.0, ..reach }, ..view };
+            assert!(short.arrow(Vec2::new(vector, 0.0)).x <= 8.0 * short.vectors.length, "no longer than its range");
         }
-        assert_eq!(vector_color(Vec2::ZERO, 0.0), colors[5]);
     }
 }

@@ -18,3 +18,4 @@ pub mod repeat;
 pub mod shots;
 pub mod sketch;
 pub mod twin;
+pub mod vectors;

@@ -126,11 +126,42 @@ impl VectorField<'_> {
         within.then(|| vector(*self.vectors.get(i, j)))
     }
 
+    /// The steepest of its slopes, of either sign.
+    pub fn steepest(&self, slope: fn(&Slopes) -> f64) -> f64 {
+        let (width, height) = (self.inside.width(), self.inside.height());
+        let all = (0..height).flat_map(|j| (0..width).map(move |i| (i, j)));
+        let inside = all.filter(|&(i, j)| *self.inside.get(i, j));
+        inside.map(|at| slope(&slopes((self.inside, self.vectors), at)).abs()).fold(0.0, f64::max)
+    }
+
     /// The length of the longest vector, in pixels.
     pub fn longest(&self) -> f64 {
         let squares = self.vectors.cells().iter().map(|[x, y]| x * x + y * y);
         f64::from(squares.fold(0.0, f32::max)).sqrt()
     }
+}
+
+/// How a field changes around a pixel, in pixels a pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Slopes {
+    /// How much the vectors lead apart.
+    pub divergence: f64,
+    /// How much they lead round, clockwise on the screen.
+    pub curl: f64,
+}
+
+/// The slopes at a pixel of a box: differences of its neighbors, as far as these have vectors.
+pub fn slopes((inside, vectors): (&Grid<bool>, &Grid<[f32; 2]>), (i, j): (usize, usize)) -> Slopes {
+    let has = |(i, j): (usize, usize)| i < inside.width() && j < inside.height() && *inside.get(i, j);
+    let along = |di: usize, dj: usize| {
+        let before = i.checked_sub(di).zip(j.checked_sub(dj)).filter(|&at| has(at));
+        let after = Some((i + di, j + dj)).filter(|&at| has(at));
+        let steps = u8::from(before.is_some()) + u8::from(after.is_some());
+        let [from, to] = [before, after].map(|at| at.unwrap_or((i, j))).map(|(i, j)| vector(*vectors.get(i, j)));
+        if steps == 0 { Vec2::ZERO } else { (to - from) / f64::from(steps) }
+    };
+    let (across, down) = (along(1, 0), along(0, 1));
+    Slopes { divergence: across.x + down.y, curl: across.y - down.x }
 }
 
 /// A vector of a field, in double precision.
@@ -148,4 +179,28 @@ pub struct Curve<'a> {
     pub symbol: &'static str,
     /// Its value at a scene time.
     pub value: Box<dyn Fn(f64) -> f64 + 'a>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slopes_tell_how_a_field_changes_also_at_its_border() {
+        let field = |of: fn(f32, f32) -> [f32; 2]| {
+            Grid::from_cells(4, 3, (0..12).map(|i| of((i % 4) as f32, (i / 4) as f32)).collect())
+        };
+        let inside = Grid::from_cells(4, 3, (0..12).map(|i| i != 5).collect());
+        for (name, vectors, divergence, curl) in [
+            ("grows", field(|x, y| [0.5 * x, 0.25 * y]), 0.75, 0.0),
+            ("turns clockwise", field(|x, y| [-0.5 * y, 0.5 * x]), 0.0, 1.0),
+            ("slides", field(|_, _| [3.0, 1.0]), 0.0, 0.0),
+        ] {
+            for at in [(0, 0), (2, 1), (0, 2), (3, 2)] {
+                assert_eq!(slopes((&inside, &vectors), at), Slopes { divergence, curl }, "{name} {at:?}");
+            }
+        }
+        let alone = Grid::from_cells(4, 3, (0..12).map(|i| i == 6).collect());
+        assert_eq!(slopes((&alone, &field(|x, _| [x, x])), (2, 1)), Slopes::default());
+    }
 }

@@ -1,7 +1,7 @@
 //! The bar at the bottom: time, what is said of the scene, and where the pointer is. What does not fit goes, the least
 //! important first; a message that does not fit stands above it.
 
-use kurbo::{Point, Rect};
+use kurbo::{Point, Rect, Vec2};
 
 use super::canvas::Canvas;
 use super::state::{BAR_PX, State};
@@ -9,7 +9,9 @@ use super::stroke::Color;
 use super::style::{ACCENT, DIM, MARGIN_PX, PANEL, RAIL, TEXT, TEXT_PX, WARNING};
 use super::text::Letters;
 use super::transport::Part;
+use crate::base::maths::atan2;
 use crate::base::number::rounded;
+use crate::base::text::short;
 
 const GROUND: Color = [28, 31, 37, 255];
 /// Width of the sign that plays, with its room, in logical pixels.
@@ -211,6 +213,12 @@ fn times(state: &State) -> Vec<String> {
     ]
 }
 
+/// Length and direction of a jump vector, counter-clockwise as in the editor's table.
+fn polar(jump: Vec2) -> String {
+    let degrees = if jump == Vec2::ZERO { 0.0 } else { atan2(0.0 - jump.y, jump.x).to_degrees() };
+    format!("{} px {}°", short(jump.hypot2().sqrt(), 2), short(degrees, 1))
+}
+
 /// What stands on the right, as much of it as fits: the least important goes first.
 fn right_text(state: &State, room: f64, width: impl Fn(&str) -> f64) -> String {
     let percent = state.viewport.zoom * 100.0;
@@ -219,6 +227,7 @@ fn right_text(state: &State, room: f64, width: impl Fn(&str) -> f64) -> String {
     parts.extend(state.pointed().map(|p| (3, format!("x {:.1}  y {:.1}", p.x, p.y))));
     parts.extend(state.under.clone().map(|under| (5, under)));
     parts.extend(state.jump.map(|jump| (2, format!("jump {:.2}, {:.2}", jump.x, jump.y))));
+    parts.extend(state.jump.map(|jump| (1, polar(jump))));
     parts.extend(state.transport.whole_frames.then(|| (0, "whole frames".to_owned())));
     parts.extend(state.fps.map(|fps| (2, format!("{fps:.0} fps"))));
     parts.extend(state.thin.words().map(|words| (5, words.to_owned())));

@@ -114,6 +114,7 @@ mod tests {
     use super::super::style::PANEL;
     use super::*;
     use crate::base::problem::Problem;
+    use crate::layers::parts::vectors::Reach;
     use crate::layers::timeline::Timeline;
     use kurbo::Size;
 
@@ -121,7 +122,8 @@ mod tests {
     fn all_keys_fit_a_small_window_beside_legends_and_problems() {
         let letters = Letters::default();
         for size in [Size::new(360.0, 240.0), Size::new(480.0, 320.0), Size::new(512.0, 802.0)] {
-            let mut state = State { panel: Panel::Help, longest: 40.0, ..State::default() };
+            let mut state =
+                State { panel: Panel::Help, reach: Reach { longest_px: 40.0, ..Reach::default() }, ..State::default() };
             for command in ["view-field", "view-wheel"] {
                 state.run(command);
             }

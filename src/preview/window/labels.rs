@@ -7,7 +7,6 @@ use std::rc::Rc;
 use kurbo::{Point, Rect, Size, Vec2};
 
 use super::canvas::Canvas;
-use super::marks::color_of;
 use super::stroke::Color;
 use super::text::{Letters, Text};
 use super::viewport::Viewport;
@@ -68,7 +67,7 @@ fn found(marks: &[Mark], screen: &impl Fn(Point) -> Point, area: Size, scale: f6
         let at = Some(screen(*at)).filter(|at| in_sight.contains(*at))?;
         let text = letters.line(text, LABEL_PX * scale);
         let size = Size::new(text.width, LABEL_PX * scale) + Size::new(2.0 * RIM_PX, 2.0 * RIM_PX) * scale;
-        Some(Label { at, text, color: color_of(mark), size })
+        Some(Label { at, text, color: mark.color(), size })
     };
     all.filter_map(label).collect()
 }

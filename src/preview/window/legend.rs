@@ -11,15 +11,20 @@ use super::style::{MARGIN_PX, PANEL, TEXT, TEXT_PX};
 use super::text::{Letters, Text};
 use crate::base::maths::{TAU, cos, nice, sin};
 use crate::base::text::short;
-use crate::layers::parts::marks::{Legend, VECTORS, vector_color};
+use crate::layers::parts::marks::{Legend, VECTORS, View};
+use crate::layers::parts::vectors::{Coloring, by_direction};
 use crate::render::overlay::overlays;
 
 /// Radius of the wheel of colors and of its dots, in logical pixels, and how many rings it has.
 const WHEEL_PX: f64 = 34.0;
 const DOT_PX: f64 = 2.6;
 const RINGS: u32 = 6;
-/// The longest arrow.
+/// Width and height of a scale of colors, and in how many steps it is drawn.
+const SCALE_PX: (f64, f64) = (110.0, 10.0);
+const STEPS: u32 = 22;
+/// The longest arrow, and the only one where all are equally long.
 const LONGEST_PX: f64 = 90.0;
+const EQUAL_PX: f64 = 22.0;
 /// Between an arrow and its text.
 const GAP_PX: f64 = 12.0;
 
@@ -29,12 +34,15 @@ pub fn draw(canvas: &mut Canvas, state: &State, letters: &Letters, free: Rect) {
         return;
     }
     let needs = |legend| overlays().any(|overlay| overlay.legend == Some(legend) && state.shows(overlay.name));
+    let look = &state.switches.vectors;
+    let is_stroke = needs(Legend::Arrows) || needs(Legend::Lines);
+    let colors = needs(Legend::Colors) || is_stroke && look.color != Coloring::Plain;
     // Where nothing jumps there are no colors to explain.
-    let wheel = (needs(Legend::Colors) && state.longest > 0.0).then(|| Wheel::new(state, letters));
+    let colors = (colors && state.reach.longest_px > 0.0).then(|| Colors::new(state, letters));
     let bar = needs(Legend::Arrows).then(|| ScaleBar::new(state, letters)).flatten();
-    let sizes = [wheel.as_ref().map(|wheel| wheel.size), bar.as_ref().map(|bar| bar.size)];
-    let [wheel_at, bar_at] = places(sizes, free, MARGIN_PX * state.scale);
-    wheel.zip(wheel_at).into_iter().for_each(|(wheel, at)| wheel.draw(canvas, state, at));
+    let sizes = [colors.as_ref().map(|colors| colors.size), bar.as_ref().map(|bar| bar.size)];
+    let [colors_at, bar_at] = places(sizes, free, MARGIN_PX * state.scale);
+    colors.zip(colors_at).into_iter().for_each(|(colors, at)| colors.draw(canvas, state, at));
     bar.zip(bar_at).into_iter().for_each(|(bar, at)| bar.draw(canvas, state, at));
 }
 
@@ -52,36 +60,62 @@ fn places([right, left]: [Option<Size>; 2], free: Rect, margin: f64) -> [Option<
     [right, left.filter(|place| fits(place) && place.x1 <= room.x1)]
 }
 
-/// Colors by direction and length, the longest jump vector at the rim and its length below.
-struct Wheel {
+/// What colors tell: directions on a wheel, the longest jump vector at its rim and its length below, or a scale from the least
+/// to the most.
+struct Colors {
+    /// The scale and its ends; `None` for the wheel.
+    scale: Option<(fn(f64) -> [u8; 3], [Rc<Text>; 2])>,
+    /// The length at the rim, or what the scale tells.
     text: Rc<Text>,
     size: Size,
 }
 
-impl Wheel {
-    fn new(state: &State, letters: &Letters) -> Wheel {
-        let scale = state.scale;
-        let text = letters.line(&format!("{} px", short(state.longest, 1)), TEXT_PX * scale);
-        let width = (2.0 * WHEEL_PX * scale).max(text.width) + 2.0 * MARGIN_PX * scale;
-        let size = Size::new(width, (2.0 * WHEEL_PX + TEXT_PX + 3.0 * MARGIN_PX) * scale);
-        Wheel { text, size }
+impl Colors {
+    fn new(state: &State, letters: &Letters) -> Colors {
+        let (scale, look) = (state.scale, &state.switches.vectors);
+        let line = |text: &str| letters.line(text, TEXT_PX * scale);
+        let found = look.scale(state.reach).map(|(color, ends)| (color, ends.map(|end| line(&end))));
+        let (text, extent) = match &found {
+            None => (line(&format!("{} px", short(state.reach.longest_px, 1))), [2.0 * WHEEL_PX; 2]),
+            Some(_) => (line(look.color.name()), [SCALE_PX.0, SCALE_PX.1 + TEXT_PX + MARGIN_PX]),
+        };
+        let width = (extent[0] * scale).max(text.width) + 2.0 * MARGIN_PX * scale;
+        let size = Size::new(width, (extent[1] + TEXT_PX + 3.0 * MARGIN_PX) * scale);
+        Colors { scale: found, text, size }
     }
 
     fn draw(&self, canvas: &mut Canvas, state: &State, at: Rect) {
         let scale = state.scale;
         canvas.rect(at, 4.0 * scale, PANEL);
-        let middle = Point::new(at.center().x, at.y0 + (MARGIN_PX + WHEEL_PX) * scale);
-        for ring in 0..=RINGS {
-            let (share, dots) = (f64::from(ring) / f64::from(RINGS), (6 * ring).max(1));
-            for dot in 0..dots {
-                let angle = TAU * f64::from(dot) / f64::from(dots);
-                let jump = Vec2::new(cos(angle), sin(angle)) * share;
-                let [r, g, b, _] = vector_color(jump, 1.0);
-                canvas.disc(middle + jump * ((WHEEL_PX - DOT_PX) * scale), DOT_PX * scale, [r, g, b, 255]);
+        match &self.scale {
+            None => wheel(canvas, Point::new(at.center().x, at.y0 + (MARGIN_PX + WHEEL_PX) * scale), scale),
+            Some((color, ends)) => {
+                let (x0, x1, y0) = (at.x0 + MARGIN_PX * scale, at.x1 - MARGIN_PX * scale, at.y0 + MARGIN_PX * scale);
+                let step = (x1 - x0) / f64::from(STEPS);
+                for k in 0..STEPS {
+                    let [r, g, b] = color((f64::from(k) + 0.5) / f64::from(STEPS));
+                    let x = x0 + step * f64::from(k);
+                    canvas.rect(Rect::new(x, y0, x + step, y0 + SCALE_PX.1 * scale), 0.0, [r, g, b, 255]);
+                }
+                let below = y0 + (SCALE_PX.1 + MARGIN_PX / 2.0) * scale;
+                canvas.text(&ends[0], Point::new(x0, below), TEXT);
+                canvas.text(&ends[1], Point::new(x1 - ends[1].width, below), TEXT);
             }
         }
         let text_at = Point::new(at.center().x - self.text.width / 2.0, at.y1 - (MARGIN_PX + TEXT_PX) * scale);
         canvas.text(&self.text, text_at, TEXT);
+    }
+}
+
+fn wheel(canvas: &mut Canvas, middle: Point, scale: f64) {
+    for ring in 0..=RINGS {
+        let (share, dots) = (f64::from(ring) / f64::from(RINGS), (6 * ring).max(1));
+        for dot in 0..dots {
+            let angle = TAU * f64::from(dot) / f64::from(dots);
+            let way = Vec2::new(cos(angle), sin(angle));
+            let [r, g, b] = by_direction(way, share);
+            canvas.disc(middle + way * (share * (WHEEL_PX - DOT_PX) * scale), DOT_PX * scale, [r, g, b, 255]);
+        }
     }
 }
 
@@ -96,10 +130,15 @@ struct ScaleBar {
 impl ScaleBar {
     fn new(state: &State, letters: &Letters) -> Option<ScaleBar> {
         let scale = state.scale;
-        let screen_from_jump = state.arrow_scale * state.viewport.zoom / scale;
-        let jump = nice(LONGEST_PX / screen_from_jump)?;
-        let length = jump * screen_from_jump * scale;
-        let text = format!("{jump} px   one every {} px", short(state.field_spacing(), 1));
+        let view = View { reach: state.reach, ..state.fixed_view() };
+        let every = short(state.field_spacing(), 1);
+        let (length, text) = if view.vectors.equal {
+            (EQUAL_PX * scale, format!("direction alone   one every {every} px"))
+        } else {
+            let screen_from_jump = view.arrow_scale() * state.viewport.zoom / scale;
+            let jump = nice(LONGEST_PX / screen_from_jump)?;
+            (jump * screen_from_jump * scale, format!("{jump} px   one every {every} px"))
+        };
         let text = letters.line(&text, TEXT_PX * scale);
         let size = Size::new(length + text.width + (GAP_PX + 2.0 * MARGIN_PX) * scale, 20.0 * scale);
         Some(ScaleBar { length, text, size })

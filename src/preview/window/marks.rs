@@ -6,7 +6,7 @@ use super::canvas::Canvas;
 use super::stroke::Color;
 use super::viewport::Viewport;
 use crate::base::geometry::Polygon;
-use crate::layers::parts::marks::{Dot, FILL_ALPHA, Look, Mark, SELECTED, SELECTED_GROWTH, Shape};
+use crate::layers::parts::marks::{Dot, FILL_ALPHA, Look, Mark, SELECTED_GROWTH, Shape};
 
 /// Distance of the lines that fill a region, in logical pixels.
 const HATCH_PX: f64 = 7.0;
@@ -62,7 +62,7 @@ impl Painter<'_> {
     fn mark(&self, canvas: &mut Canvas, mark: &Mark) {
         let look = mark.look;
         let grown = if mark.selected { f64::from(SELECTED_GROWTH) } else { 1.0 } * self.scale;
-        let color = color_of(mark);
+        let color = mark.color();
         let width = f64::from(look.width_px) * grown;
         match &mark.shape {
             Shape::Line { points, closed } => {
@@ -80,11 +80,11 @@ impl Painter<'_> {
                     canvas.with_halo(|c| c.arrow(from, to, width, HEAD_PX * grown, color));
                 }
             }
-            Shape::Cell(at, side, color) => {
+            Shape::Cell(at, side) => {
                 // On whole pixels, so that neighbors meet without a seam.
                 let [a, b] = [-0.5, 0.5].map(|half| self.screen(*at + Vec2::new(side * half, side * half)).round());
                 if self.seen(&[a, b]) {
-                    canvas.rect(Rect::from_points(a, b), 0.0, *color);
+                    canvas.rect(Rect::from_points(a, b), 0.0, color);
                 }
             }
             Shape::Label(..) => {}
@@ -124,11 +124,6 @@ impl Painter<'_> {
     }
 }
 
-pub fn color_of(mark: &Mark) -> Color {
-    let [r, g, b, a] = if mark.selected { SELECTED } else { mark.look.color };
-    [r, g, b, (f32::from(a) * mark.strength).round() as u8]
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::viewport::Fit;
@@ -164,7 +159,7 @@ mod tests {
         let faint = Mark { strength: 0.5, ..mark(Shape::Dot(Point::new(50.0, 50.0)), false) };
         let canvas = draw(&[faint], &viewport(), AREA, 1.0);
         assert_eq!(canvas.strokes.last().unwrap().color[3], 128);
-        let cell = mark(Shape::Cell(Point::new(50.3, 50.0), 4.5, [9; 4]), false);
+        let cell = mark(Shape::Cell(Point::new(50.3, 50.0), 4.5), false);
         let canvas = draw(&[cell], &viewport(), AREA, 1.0);
         assert_eq!((canvas.strokes[0].a, canvas.strokes[0].b), ([48.0, 48.0], [53.0, 52.0]));
     }

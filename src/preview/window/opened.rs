@@ -17,7 +17,7 @@ use super::options::{PLACE, WindowOptions};
 use super::own_view::OwnView;
 use super::pass::{self, For};
 use super::screen::{Pictures, Presented, Screen, Strokes};
-use super::show::{Cached, Show, jump_at, seen, thinned, under};
+use super::show::{Cached, Show, seen, thinned, under};
 use super::state::{BAR_PX, State};
 use super::text::Letters;
 use super::worker::Event;
@@ -28,6 +28,7 @@ use crate::export::still;
 use crate::files::write;
 use crate::render::Synth;
 use crate::render::gpu::Gpu;
+use crate::render::overlay::jump_at;
 use crate::render::passes::Asked;
 
 /// Smallest and first size of a window, in logical pixels.
@@ -162,7 +163,7 @@ impl OpenWindow {
         let pictures = match show {
             Some(show) => {
                 marks.follow(state, show, letters);
-                (state.arrow_scale, state.longest) = (marks.arrow_scale, marks.longest);
+                state.reach = marks.reach;
                 state.grips = [&marks.grips[..], &marks.moving_grips].concat();
                 let asked = state.pointed().filter(|_| state.shows_vectors());
                 state.jump = asked.and_then(|at| jump_at(&show.synth, at));

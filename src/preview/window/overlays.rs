@@ -52,6 +52,7 @@ impl State {
             shown: shown.map(|overlay| overlay.name).collect(),
             spacing_px: self.field_spacing(),
             cell_px: self.spacing(WHEEL_PX),
+            vectors: self.switches.vectors.clone(),
             least_px: LEAST_PX * self.scale / self.viewport.zoom,
             selection: self.selection.clone(),
             ..View::default()

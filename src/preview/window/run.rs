@@ -43,11 +43,11 @@ impl State {
             return Outcome::Redraw;
         }
         self.words.told = None;
-        let (name, wanted) = views::wanted(command);
-        if self.switches.set(name, wanted).is_some() {
+        if self.switches.take(command).is_some() {
             self.transport.whole_frames = self.shows("view-whole-frames");
             return Outcome::Redraw;
         }
+        let (name, wanted) = views::wanted(command);
         if self.steer(name) && wanted.is_none() {
             return Outcome::Redraw;
         }

@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use kurbo::{Point, Size, Vec2};
+use kurbo::{Point, Size};
 
 use super::canvas::Canvas;
 use super::own_view::OwnView;
@@ -14,9 +14,10 @@ use super::viewport::Viewport;
 use super::{labels, marks};
 use crate::base::pointer::Pointer;
 use crate::layers::parts::marks::{Mark, Shape, View};
+use crate::layers::parts::vectors::Reach;
 use crate::layers::space::camera::Camera;
 use crate::render::Synth;
-use crate::render::overlay::{aimed, longest, overlay, overlays};
+use crate::render::overlay::{aimed, overlay, overlays, reach};
 use crate::render::reduce::reduced;
 use crate::scene::grips::{Grip, grips};
 use crate::scene::{Document, Scene, words::item_of};
@@ -66,13 +67,6 @@ pub fn seen<'a>(synth: &'a Synth, own: Option<&Camera>) -> Cow<'a, Synth> {
     own.map_or(Cow::Borrowed(synth), |camera| Cow::Owned(synth.seen_from(camera.clone())))
 }
 
-/// The jump vector of the pixel at a place in the picture: that of the topmost field there.
-pub fn jump_at(synth: &Synth, at: Point) -> Option<Vec2> {
-    let pixel = (at.x >= 0.0 && at.y >= 0.0).then_some((at.x as usize, at.y as usize))?;
-    let fields = synth.layers.iter().rev().flat_map(|layer| layer.fields().into_iter().rev());
-    fields.into_iter().find_map(|field| field.at(pixel))
-}
-
 /// What stands under a place in the picture, nearest in the topmost group of layers in space that is there at scene time
 /// `t`: layer, triangle and depth.
 pub fn under(scene: &Scene, synth: &Synth, t: f64, at: Point) -> Option<String> {
@@ -117,10 +111,8 @@ pub struct Cached {
     pub grips: Vec<Grip>,
     /// What can be dragged of what changes with every frame.
     pub moving_grips: Vec<Grip>,
-    /// See [`State::arrow_scale`].
-    pub arrow_scale: f64,
-    /// See [`State::longest`].
-    pub longest: f64,
+    /// See [`State::reach`].
+    pub reach: Reach,
     /// The number of scenes so far.
     pub revision: u64,
 }
@@ -182,8 +174,7 @@ impl Cached {
         self.fixed.strokes.extend(marks::draw(&found, &state.viewport, state.area(), state.scale).strokes);
         self.labels = labels::draw(&found, &state.viewport, state.area(), state.scale, letters);
         let legends = overlays().any(|overlay| overlay.legend.is_some() && state.shows(overlay.name));
-        self.longest = if legends { longest(&show.synth) } else { 0.0 };
-        self.arrow_scale = View { longest_px: self.longest, ..view }.arrow_scale();
+        self.reach = if legends { reach(&show.synth, &view.vectors) } else { Reach::default() };
     }
 }
 
@@ -196,33 +187,6 @@ fn grip(mark: &Mark) -> Option<Grip> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_topmost_zone_under_the_pointer_gives_the_jump() {
-        use crate::base::picture::Picture;
-        use crate::layers::parts::materials::Materials;
-        let zone = |name: &str, x: u32, jump: u32| {
-            format!(
-                r#"{{ "name": "{name}", "outline": {{"kind": "rectangle", "x": {x}, "y": 2, "width": 4, "height": 4}},
-                    "motion": [{{"tool": "translate", "by": [{jump}, 0]}}]}}"#
-            )
-        };
-        let scene = format!(
-            r#"{{ "plica": 1, "images": {{"a": {{"path": "a.png"}}}}, "layers": [{{ "kind": "picture", "name": "l", "image": "a",
-              "zones": [{}, {}]}}]}}"#,
-            zone("below", 1, 3),
-            zone("above", 4, 5)
-        );
-        let scene = serde_json::from_str(&scene).unwrap();
-        let picture = Arc::new(Picture::filled(16, 16, [1.0; 4]));
-        let materials = Materials { pictures: [("a".to_owned(), picture)].into(), ..Materials::default() };
-        let synth = crate::render::synth(&scene, &materials, None).unwrap();
-        let table =
-            [(1.5, 2.0, Some(3.0)), (4.9, 3.0, Some(5.0)), (0.9, 3.0, None), (-1.0, 3.0, None), (5.0, 6.0, None)];
-        for (x, y, expected) in table {
-            assert_eq!(jump_at(&synth, Point::new(x, y)).map(|jump| jump.x), expected, "{x} {y}");
-        }
-    }
 
     #[test]
     fn the_nearest_triangle_under_the_pointer_is_told() {

@@ -10,6 +10,7 @@ use super::transport::Playhead;
 use super::viewport::{Fit, Viewport};
 use super::words::{Words, Work};
 use crate::base::pointer::Pointer;
+use crate::layers::parts::vectors::Reach;
 use crate::layers::ready::Ready;
 use crate::layers::space::camera::Camera;
 use crate::layers::space::fit::Ball;
@@ -97,10 +98,8 @@ pub struct State {
     pub fps: Option<f64>,
     /// Sprites that are left out, while it plays.
     pub thin: Thin,
-    /// Length of the field's arrows on the picture, as a share of the jump vectors.
-    pub arrow_scale: f64,
-    /// The longest jump vector, in pixels of the picture.
-    pub longest: f64,
+    /// What is drawn as the longest arrow and in the fullest color, where a legend tells it.
+    pub reach: Reach,
 }
 
 /// A list of keys over the picture.
@@ -155,8 +154,7 @@ impl Default for State {
             selects: false,
             fps: None,
             thin: Thin::default(),
-            arrow_scale: 1.0,
-            longest: 0.0,
+            reach: Reach::default(),
         }
     }
 }

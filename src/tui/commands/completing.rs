@@ -6,6 +6,7 @@ use super::command::Table;
 use super::{fields, profiles};
 use crate::base::pointer::Pointer;
 use crate::layers::parts::materials::List;
+use crate::layers::parts::vectors;
 use crate::ops::style;
 use crate::scene::{address, complete};
 use crate::tui::state::State;
@@ -68,6 +69,11 @@ pub fn candidates(table: &Table, state: &State, typed: &str) -> Vec<String> {
         Some(("style", name)) => {
             let names = style::names().into_iter().map(|(own, _)| own).filter(|own| own.starts_with(name));
             names.map(|own| format!("style {own}")).collect()
+        }
+        Some((vectors::COMMAND, words)) => {
+            let (before, last) = words.split_at(words.rfind(' ').map_or(0, |end| end + 1));
+            let names = vectors::SETTINGS.iter().map(|setting| setting.name).filter(|name| name.starts_with(last));
+            names.map(|name| format!("{} {before}{name}=", vectors::COMMAND)).collect()
         }
         Some((name, typed)) => {
             let words = table.find(name).and_then(|command| command.words()).map(|(words, _)| words);

@@ -4,6 +4,7 @@ use super::command::{Call, Command, Done, command};
 use super::picture::switch;
 use crate::base::problem::quoted;
 use crate::files::paths;
+use crate::layers::parts::vectors;
 use crate::preview::keys as window;
 use crate::preview::views;
 use crate::tui::events::Effect;
@@ -86,6 +87,7 @@ fn view(state: &mut State, call: &Call) -> Done {
     match call.text {
         "" if call.count.is_some() => return Err("view takes no count".into()),
         "" => state.ask(Effect::View(None)),
+        words if words.split(' ').next() == Some(vectors::COMMAND) => call.obey(state, words)?,
         command if known(views::wanted(command).0) => {
             let (name, wanted) = views::wanted(command);
             // A switch is told as what it is set to here.
@@ -94,7 +96,9 @@ fn view(state: &mut State, call: &Call) -> Done {
                 if wanted.is_some() && told.is_none() {
                     return Err(format!("{} is no switch, to be on or off", quoted(name)));
                 }
-                if let Some(on) = told.as_deref().and_then(|told| told.strip_prefix(name)) {
+                if told.as_deref().is_some_and(|told| told.starts_with(vectors::COMMAND)) {
+                    state.say(state.picture.switches.vectors.to_string());
+                } else if let Some(on) = told.as_deref().and_then(|told| told.strip_prefix(name)) {
                     let row = window::KEYS.iter().find(|row| row.command == name);
                     state.say(format!("{}:{on}", row.map_or(name, |row| row.help)));
                 }

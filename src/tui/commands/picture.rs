@@ -32,6 +32,12 @@ pub const COMMANDS: &[Command] = &[
         pass,
     ),
     command("probe", "[X,Y|off]", "Open or close the read-out of a pixel", probe),
+    command(
+        "vectors",
+        "[NAME=VALUE...|default]",
+        "Show or set how the vector field is drawn: color, length, equal, longest, steepest, opacity",
+        vectors,
+    ),
 ];
 
 fn zoom(state: &mut State, call: &Call) -> Done {
@@ -127,10 +133,10 @@ fn pass(state: &mut State, call: &Call) -> Done {
 /// Takes a command that turns something on or off, or over, here; returns it as it is told to windows, if it is one.
 pub fn switch(state: &mut State, command: &str) -> Option<String> {
     let told = state.picture.switches.take(command)?;
-    match told.split_once(' ') {
-        Some((name, "off")) => drop(state.picture.off.insert(name.to_owned())),
-        Some((name, _)) => drop(state.picture.off.remove(name)),
-        None => {}
+    match views::wanted(&told) {
+        (name, Some(false)) => drop(state.picture.off.insert(name.to_owned())),
+        (name, Some(true)) => drop(state.picture.off.remove(name)),
+        (_, None) => {}
     }
     Some(told)
 }
@@ -144,6 +150,17 @@ pub fn follow_window(state: &mut State, command: &str) {
     {
         take_pass(state, asked);
     }
+}
+
+/// Sets how the vector field is drawn, here and in the windows, and says how it is.
+fn vectors(state: &mut State, call: &Call) -> Done {
+    let look = &mut state.picture.switches.vectors;
+    let before = look.clone();
+    look.set(call.text).inspect_err(|_| *look = before.clone())?;
+    let (told, all) = ((*look != before).then(|| look.command()), look.to_string());
+    told.into_iter().for_each(|told| state.ask(Effect::View(Some(told))));
+    state.say(all);
+    Ok(())
 }
 
 fn take_pass(state: &mut State, asked: Option<Asked>) {

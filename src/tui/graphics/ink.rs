@@ -7,7 +7,7 @@ use super::viewport::clipped;
 use crate::base::geometry::Polygon;
 use crate::base::maths;
 use crate::base::pixels::Frame;
-use crate::layers::parts::marks::{Dot, Mark, SELECTED, SELECTED_GROWTH, Shape};
+use crate::layers::parts::marks::{Dot, Mark, SELECTED_GROWTH, Shape};
 use crate::render::part::Part;
 
 /// Length of an arrow's head, in dots.
@@ -42,8 +42,7 @@ impl Ink<'_> {
     fn mark(&mut self, mark: &Mark) {
         let look = mark.look;
         let dash = look.dash_px.map(|(on, off)| (self.less(on.into()).max(1.0), self.less(off.into()).max(1.0)));
-        let [r, g, b, a] = if mark.selected { SELECTED } else { look.color };
-        let color = [r, g, b, (f32::from(a) * mark.strength).round() as u8];
+        let color = mark.color();
         let pen = Pen { color, wide: mark.selected && self.by == 1, dash };
         match &mark.shape {
             Shape::Line { points, closed } => {
@@ -53,7 +52,7 @@ impl Ink<'_> {
             Shape::Arrow(from, to) => self.arrow(&pen, self.at(*from), self.at(*to)),
             Shape::Dot(at) => self.dot(&pen, self.at(*at), look.dot, f64::from(look.dot_px), mark.selected),
             Shape::Fill(points) => self.hatch(&pen, points),
-            Shape::Cell(at, side, color) => self.cell(*at, *side, *color),
+            Shape::Cell(at, side) => self.cell(*at, *side, color),
             Shape::Label(..) => {}
         }
     }
@@ -209,7 +208,7 @@ mod tests {
             found,
             ["............", "..########..", "..#......#..", "..#......#..", "..########..", "............"]
         );
-        let cell = Shape::Cell(Point::new(20.0, 15.0), 4.0, [200, 200, 200, 255]);
+        let cell = Shape::Cell(Point::new(20.0, 15.0), 4.0);
         assert_eq!(drawn(cell, &SOLID, false)[1..4], ["............", "....##......", "....##......"]);
         let far = Shape::Line { points: vec![Point::new(-1e9, 15.0), Point::new(1e9, 15.0)], closed: false };
         assert_eq!(drawn(far, &SOLID, false)[2], "############");

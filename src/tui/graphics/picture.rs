@@ -10,8 +10,9 @@ use super::protocol::Wanted;
 use super::{encode, ink};
 use crate::base::pixels::Frame;
 use crate::layers::parts::marks::Mark;
+use crate::layers::parts::vectors::Reach;
 use crate::render::Synth;
-use crate::render::overlay::overlay;
+use crate::render::overlay::{overlay, overlays, reach};
 use crate::render::part::{self, Part};
 use crate::render::sight::Visible;
 use crate::scene::Scene;
@@ -27,6 +28,8 @@ pub struct TerminalPicture {
     pub by: usize,
     /// The marks of [`Wanted::over`].
     pub over: Vec<Mark>,
+    /// What is drawn among them as the longest arrow and in the fullest color.
+    pub reach: Reach,
     /// The cells of the pane with the picture in them; `None` for half-blocks.
     pub cells: Option<Buffer>,
     /// How many bytes are written to the terminal; for half-blocks, at most.
@@ -45,21 +48,25 @@ impl TerminalPicture {
         wanted: Wanted,
         before: Option<&TerminalPicture>,
     ) -> Arc<TerminalPicture> {
+        let sent = |shown, wanted, over| Arc::new(TerminalPicture::sent(shown, time, wanted, over, before));
         if let Some((synth, over, side)) = wanted.clip.as_ref().and_then(|clip| clip.seen(synth)) {
             let square = wanted.marks.iter().map(|marks| square(marks.cursor, side));
             let over = over.into_iter().chain(square).collect();
-            return TerminalPicture::sent((&synth, None), time, wanted, over, before);
+            return sent((&synth, None), wanted, over);
         }
         let sight = wanted.sight.as_ref().and_then(|sight| sight.of(synth));
         let synth = match sight {
             Some(Visible { synth, marks: Some(over) }) => {
-                return TerminalPicture::sent((&synth, None), time, wanted, over, before);
+                return sent((&synth, None), wanted, over);
             }
             Some(Visible { synth, marks: None }) => &synth.clone(),
             None => synth,
         };
         let over = if wanted.over.shown.is_empty() { Vec::new() } else { overlay(scene, Some(synth), &wanted.over) };
-        TerminalPicture::sent((synth, Some(scene)), time, wanted, over, before)
+        let has_legend = overlays().any(|overlay| overlay.legend.is_some() && wanted.over.shows(overlay.name));
+        let reach = if has_legend { reach(synth, &wanted.over.vectors) } else { Reach::default() };
+        let made = TerminalPicture::sent((synth, Some(scene)), time, wanted, over, before);
+        Arc::new(TerminalPicture { reach, ..made })
     }
 
     /// Without a scene, nothing of it is drawn over the picture.
@@ -69,12 +76,12 @@ impl TerminalPicture {
         wanted: Wanted,
         over: Vec<Mark>,
         before: Option<&TerminalPicture>,
-    ) -> Arc<TerminalPicture> {
+    ) -> TerminalPicture {
         let mut by = before.map_or(1, |before| guess(before, &wanted));
         loop {
             let made = TerminalPicture::reduced(shown, time, &wanted, (&over, by));
             if made.bytes <= wanted.bytes || by >= MOST_REDUCED {
-                return Arc::new(TerminalPicture { over, ..made });
+                return TerminalPicture { over, ..made };
             }
             by = (guess(&made, &wanted)).max(by + 1);
         }
@@ -100,7 +107,7 @@ impl TerminalPicture {
             ink.cross(marks.cursor);
         }
         let (cells, bytes) = encode::encode(&frame, by, wanted);
-        TerminalPicture { wanted: wanted.clone(), frame, by, over: Vec::new(), cells, bytes }
+        TerminalPicture { wanted: wanted.clone(), frame, by, over: Vec::new(), reach: Reach::default(), cells, bytes }
     }
 
     /// The color at a place of the picture; `None` if the place is beyond the picture or was not visible.

@@ -93,7 +93,9 @@ fn switched(state: &State, part: &Part, protocol: Protocol, selects: bool) -> Vi
     let [spacing, cell, least_px] = dots.map(|dots| dots * part.scale);
     let [spacing_px, cell_px] = [spacing, cell].map(overlay::spacing);
     let times = overlay::times(state.play.time, state.document().scene().timeline.wrap);
-    View { shown, spacing_px, cell_px, least_px, times, selection: Some(state.focused()), ..View::default() }
+    let vectors = state.picture.switches.vectors.clone();
+    let selection = Some(state.focused());
+    View { shown, spacing_px, cell_px, least_px, times, vectors, selection, ..View::default() }
 }
 
 fn wanted(state: &State) -> Option<Wanted> {

@@ -8,7 +8,8 @@ use ratatui::layout::{Position, Rect};
 use ratatui::style::{Color, Modifier, Style};
 
 use super::{arrow, write};
-use crate::layers::parts::marks::{Dot, Mark, SELECTED, Shape};
+use crate::base::number::rounded;
+use crate::layers::parts::marks::{Dot, Legend, Mark, Shape};
 use crate::layers::parts::picking::Subject;
 use crate::render::overlay;
 use crate::render::part::Part;
@@ -19,7 +20,7 @@ use crate::tui::state::painting::{self, Painting, Sees};
 use crate::tui::state::{Mode, Pane, State, place};
 use crate::tui::text::color;
 use crate::tui::text::color::Depth;
-use crate::tui::text::numbers::short;
+use crate::tui::text::numbers::{polar, short};
 use crate::tui::text::plain;
 
 /// The title: the cursor's coordinates, the scale, and the protocol.
@@ -73,6 +74,35 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
     let within = |cell: f64, cells: u16| cell.clamp(0.0, f64::from(cells - 1)) as u16;
     let cursor = Position::new(area.x + within(cursor.x, area.width), area.y + within(cursor.y, area.height));
     (state.cursor.focus == Pane::Picture).then_some(cursor)
+}
+
+/// What the arrows and colors of the vector field mean, and the jump vector under the cursor; nothing where none of it is shown
+/// or legends are hidden.
+pub fn legend(state: &State) -> Option<String> {
+    let shown = state.picture.latest.as_ref().filter(|_| state.picture.switches.is_on("view-legends"))?;
+    let (view, reach) = (&shown.wanted.over, shown.reach);
+    let has = |legend| overlay::overlays().any(|overlay| overlay.legend == Some(legend) && view.shows(overlay.name));
+    let [arrows, lines, colors] = [Legend::Arrows, Legend::Lines, Legend::Colors].map(has);
+    let (longest, every) = (short(rounded(reach.longest_px, 2)), short(view.spacing_px));
+    let mut parts = Vec::new();
+    if arrows {
+        let how = if view.vectors.equal { "equal".into() } else { format!("to {longest} px") };
+        parts.push(format!("arrows {how} every {every}"));
+    }
+    match view.vectors.scale(reach) {
+        Some((_, [least, most])) if arrows || lines || colors => {
+            parts.push(format!("{} {least} to {most}", view.vectors.color.name()));
+        }
+        None if colors => parts.push(format!("directions to {longest} px")),
+        _ => {}
+    }
+    let jump = state.picture.synth.as_ref().and_then(|synth| overlay::jump_at(synth, state.picture.cursor));
+    if let Some(jump) = jump.filter(|_| arrows || lines || colors) {
+        let (length, degrees) = polar(jump);
+        let [x, y, length] = [jump.x, jump.y, length].map(|number| short(rounded(number, 2)));
+        parts.push(format!("here {x}, {y}  {length} px {}°", short(rounded(degrees, 1))));
+    }
+    (!parts.is_empty()).then(|| format!(" {} ", parts.join("  ")))
 }
 
 /// The cells with the picture as pixels, if there are such cells for a pane of this size.
@@ -174,11 +204,7 @@ fn draw_marks(state: &State, part: &Part, area: Rect, buffer: &mut Buffer) {
 }
 
 fn draw_mark(mark: &Mark, depth: Depth, part: &Part, area: Rect, buffer: &mut Buffer) {
-    let [r, g, b, _] = match mark.shape {
-        Shape::Cell(.., color) => color,
-        _ if mark.selected => SELECTED,
-        _ => mark.look.color,
-    };
+    let [r, g, b, _] = mark.color();
     let style = depth.color([r, g, b]).map_or(Style::new(), |ink| Style::new().fg(ink));
     let style = if mark.selected { style.add_modifier(Modifier::BOLD) } else { style };
     let glyph = mark.look.stroke;

@@ -63,6 +63,7 @@ pub fn draw(frame: &mut Frame, state: &State) {
         let inner = pane(frame, state, picture, Pane::Picture, &panes::picture::title(state));
         cursor = panes::picture::draw(state, inner, frame.buffer_mut()).or(cursor);
     }
+    legend(frame, state);
     panes::status::draw(state, areas.status, frame.buffer_mut());
     cursor = panes::line::draw(state, areas.line, frame.buffer_mut()).or(cursor);
     cursor = panes::popup::draw(state, screen, frame.buffer_mut()).or(cursor);
@@ -78,6 +79,14 @@ fn pane(frame: &mut Frame, state: &State, area: Rect, which: Pane, title: &str) 
     let title = Line::from(format!("{}{title} ", if focused { ">" } else { " " }));
     let title = if focused { title.style(color::strong()) } else { title };
     bordered(frame, area, title)
+}
+
+/// The legend of the vector field, in the border below the picture.
+fn legend(frame: &mut Frame, state: &State) {
+    if let (Some(area), Some(legend)) = (layout::picture_area(state), panes::picture::legend(state)) {
+        let border = Rect { y: area.bottom(), height: 1, ..area };
+        panes::write(frame.buffer_mut(), border, 0, 0, &legend, color::faint());
+    }
 }
 
 fn block(frame: &mut Frame, area: Rect, title: &str) -> Rect {

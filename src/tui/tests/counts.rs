@@ -244,6 +244,8 @@ fn unknown_words_are_refused_by_name() {
         ("", "undo foo"),
         ("", "earlier foo"),
         ("", "graphics foo"),
+        ("", "vectors foo"),
+        ("", "view vectors foo"),
         ("", "yank foo"),
         ("", "foo"),
     ] {

@@ -176,6 +176,10 @@ pub fn graphics_are_told_and_set() {
         (": \"graphics sixl\" Enter", "sixel", true),
         (": \"graphics bytes 5\" Enter", "1000", true),
         (": \"graphics bytes 20000\" Enter", "at most 20000 bytes", false),
+        (": \"vectors\" Enter", "vectors color=plain length=1 equal=off longest=auto steepest=auto opacity=1", false),
+        (": \"vectors color=curl length=2\" Enter", "color=curl length=2 equal=off", false),
+        (": \"vectors lenght=2\" Enter", "did you mean \"length\"?", true),
+        ("z *", "vectors color=plain length=1.4", false),
         (": \"zoom sideways\" Enter", "in, out, fit or one", true),
     ] {
         let mut state = state();
@@ -381,6 +385,30 @@ fn panes_say_what_the_items_of_a_layer_are_called() {
         state.size = (160, 48);
         let shown = screen(&state);
         assert!(words.iter().all(|word| shown.contains(word)), "{shown}");
+    }
+}
+
+#[test]
+fn a_legend_tells_what_is_shown_of_the_field_until_it_is_hidden() {
+    let mut state = shown_by(Protocol::Blocks, "");
+    state.size = (160, 48);
+    for (keys, has, has_not) in [
+        ("", "", "every"),
+        ("z v", "arrows to ", "length"),
+        (": \"vectors color=length longest=20\" Enter", "every 8  length 0 to 20 px", "directions"),
+        ("z Y", "arrows equal every ", "arrows to "),
+        ("z v z d", "length 0 to 20 px  here ", "arrows"),
+        (": \"vectors default\" Enter", "directions to ", "length"),
+        ("z E", "", "directions"),
+        ("z E z d z y", "here ", "directions"),
+    ] {
+        press(&mut state, keys);
+        state.message = None;
+        see(&mut state);
+        let legend = crate::tui::panes::picture::legend(&state).unwrap_or_default();
+        assert!(legend.contains(has) && !legend.contains(has_not), "{keys}: {legend}");
+        let begins: String = legend.chars().take(20).collect();
+        assert!(screen(&state).contains(&begins), "{keys}: {legend}");
     }
 }
 

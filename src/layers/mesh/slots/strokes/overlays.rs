@@ -155,7 +155,7 @@ fn rims(scene: &Scene) -> Vec<Mark> {
     let is_rim = |i: &usize| all.iter().any(|rim| rim[*i]);
     let cell = |i: usize| {
         let at = Point::new((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);
-        Mark::new(&RIM, "/strokes/marks", Shape::Cell(at, 1.0, RIM.color))
+        Mark::new(&RIM, "/strokes/marks", Shape::Cell(at, 1.0))
     };
     (0..given.triangle.len()).filter(is_rim).map(cell).collect()
 }
