@@ -81,6 +81,7 @@ const OWN: &[KeyRow] = &[
     row(WINDOW, "F11", "view-full-screen", "The whole screen"),
     row(WINDOW, "Enter", "mark-point", "Marks the pointer's place, for the editor"),
     row(WINDOW, "u", "select-point", "Selects what is under the pointer; so does a click"),
+    row(WINDOW, "X", "copy-point", "Copies the pointer's place and the color there: the editor yanks it"),
     row(WINDOW, "Space", PLAY, "Plays or pauses"),
     row(WINDOW, "A", "play-part", "From here on is played, then up to here, then all again"),
     row(WINDOW, "T", TRY_NOW, "Tries at once to connect again"),

@@ -9,7 +9,7 @@ use super::Synth;
 use super::made::{LastMade, Wholes};
 use super::stage::{Group, Stage};
 use super::whole::Surfaced;
-use crate::base::pixels::{Frame, Grid, Linear, Rgba, encode_all, over};
+use crate::base::pixels::{Frame, Grid, Linear, Rgba, encode, encode_all, over};
 use crate::base::simd::vectorised;
 use crate::layers::parts::moment::{Columns, Moment};
 use crate::layers::ready::Still;
@@ -203,6 +203,12 @@ fn encode_in(light: &[Rgba], out: &mut [[u8; 4]]) {
             || encode_all(light, out),
         );
     });
+}
+
+/// The color that a frame has at one pixel: sRGB, straight alpha; `None` beside the frame.
+pub fn color_at(synth: &Synth, t: f64, (x, y): (usize, usize)) -> Option<[u8; 4]> {
+    let within = x < synth.size.0 && y < synth.size.1;
+    within.then(|| encode(*lattice(synth, t, &[x], &[y]).get(0, 0)))
 }
 
 /// The pixels of the frame at `scene_time` in these columns and rows (ascending, within the frame). No others are

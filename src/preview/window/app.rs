@@ -168,6 +168,7 @@ impl App {
         }
         if self.state.transport.playing != played {
             self.clock.start();
+            self.state.dropped = 0;
             self.report();
         }
     }

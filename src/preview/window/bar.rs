@@ -230,6 +230,7 @@ fn right_text(state: &State, room: f64, width: impl Fn(&str) -> f64) -> String {
     parts.extend(state.jump.map(|jump| (1, polar(jump))));
     parts.extend(state.transport.whole_frames.then(|| (0, "whole frames".to_owned())));
     parts.extend(state.fps.map(|fps| (2, format!("{fps:.0} fps"))));
+    parts.extend((state.dropped > 0).then(|| (3, format!("{} dropped", state.dropped))));
     parts.extend(state.thin.words().map(|words| (5, words.to_owned())));
     parts.extend(state.has_picture().then(|| (4, format!("{percent} %"))));
     parts.extend(state.own.map(|_| (6, "own view, 0 ends it".to_owned())));
@@ -294,6 +295,9 @@ mod tests {
         state.run("own-view-off");
         (state.fps, state.transport.whole_frames) = (Some(59.97), true);
         assert_eq!(right_text(&state, 999.0, width), "whole frames   60 fps   200 %   ? keys");
+        state.dropped = 7;
+        assert_eq!(right_text(&state, 999.0, width), "whole frames   60 fps   7 dropped   200 %   ? keys");
+        state.dropped = 0;
         (0..8).for_each(|_| state.thin.took(1.0));
         assert_eq!(right_text(&state, 999.0, width), "whole frames   60 fps   every fourth sprite   200 %   ? keys");
         state.thin = Default::default();

@@ -94,7 +94,9 @@ impl App {
             self.state.fps = Some(fps);
             self.report();
         }
+        let before = self.state.transport.frame;
         let goes_back = self.state.transport.advance(passed, &self.state.timeline);
+        self.state.dropped += self.state.transport.dropped(before, &self.state.timeline);
         if goes_back {
             self.lead();
         }

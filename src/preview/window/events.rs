@@ -46,7 +46,7 @@ impl App {
         self.leading(|app| app.run(event_loop, command));
         match command {
             "mark-point" => self.tell(command, self.state.marked),
-            "select-point" => self.tell(command, self.state.pointed()),
+            "select-point" | "copy-point" => self.tell(command, self.state.pointed()),
             TRY_NOW | "next-sight" => self.reply(Gesture::Command(command.to_owned())),
             "next-pass" | "previous-pass" => self.reply(Gesture::Command(views::show_pass(self.state.pass.as_deref()))),
             switch => views::setting(switch, &self.state.switches).into_iter().for_each(|setting| {
@@ -210,6 +210,11 @@ impl ApplicationHandler<Event> for App {
                 self.press(event_loop, Button::Right, state == ElementState::Pressed);
             }
             WindowEvent::MouseWheel { delta, .. } => self.wheel(delta),
+            WindowEvent::DroppedFile(path) => {
+                self.state.words.told = Some(format!("{} goes to the editor that has this scene open", path.display()));
+                self.reply(Gesture::Command(format!("file {}", path.display())));
+                self.redraw();
+            }
             _ => {}
         }
     }

@@ -85,7 +85,7 @@ impl State {
             "help" => self.panel = if self.panel == Panel::Help { Panel::None } else { Panel::Help },
             "close-panel" => return self.close(),
             "view-full-screen" => return Outcome::FullScreen,
-            "select-point" | "next-sight" | TRY_NOW => {} // answered by the editor, and by whoever follows the scene
+            "select-point" | "copy-point" | "next-sight" | TRY_NOW => {} // answered by the editor, and by whoever follows the scene
             "quit" => return Outcome::Quit,
             _ => return Outcome::Unknown,
         }

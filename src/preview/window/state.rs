@@ -96,6 +96,8 @@ pub struct State {
     pub selects: bool,
     /// Frames a second, while it plays.
     pub fps: Option<f64>,
+    /// Frames of the scene that were not shown since it plays, though whole frames are to be.
+    pub dropped: u64,
     /// Sprites that are left out, while it plays.
     pub thin: Thin,
     /// What is drawn as the longest arrow and in the fullest color, where a legend tells it.
@@ -153,6 +155,7 @@ impl Default for State {
             otherwise: None,
             selects: false,
             fps: None,
+            dropped: 0,
             thin: Thin::default(),
             reach: Reach::default(),
         }

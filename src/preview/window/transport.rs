@@ -102,6 +102,16 @@ impl Playhead {
         }
     }
 
+    /// How many frames were passed over since one that was shown, if all are to be.
+    pub fn dropped(&self, shown: f64, timeline: &Timeline) -> u64 {
+        let frames = match self.part {
+            Part::Between(first, last) => last + 1.0 - first,
+            Part::All | Part::From(_) => frames_of_all(timeline),
+        };
+        let on = (self.frame.floor() - shown.floor()).rem_euclid(frames);
+        if self.whole_frames { (on - 1.0).max(0.0) as u64 } else { 0 }
+    }
+
     /// The frame that is shown begins the part that is played, then ends it; then all is played again. Returns what it does in
     /// words.
     pub fn mark_part(&mut self) -> String {

@@ -8,7 +8,7 @@ use crate::layers::parts::pass::COLOR;
 use crate::preview::views;
 use crate::render::passes::Asked;
 use crate::tui::events::Effect;
-use crate::tui::graphics::{Protocol, viewport};
+use crate::tui::graphics::{Graphics, Protocol, viewport};
 use crate::tui::layout::picture;
 use crate::tui::state::painting::Sees;
 use crate::tui::state::picture::Picture;
@@ -21,8 +21,8 @@ pub const COMMANDS: &[Command] = &[
         .counted_with(&["left", "right", "up", "down"]),
     command(
         "graphics",
-        "[auto|kitty|iterm2|sixel|blocks|bytes N]",
-        "Show or set how the picture is sent to the terminal",
+        "[auto|kitty|iterm2|sixel|blocks|bytes N|rate N]",
+        "Show or set how the picture is sent to the terminal, and how many bytes it takes: a frame, a second of playing blocks",
         graphics,
     ),
     command(
@@ -95,21 +95,24 @@ fn graphics(state: &mut State, call: &Call) -> Done {
             let bytes = bytes.ok_or("graphics bytes takes a number from 1000 to 100000000")?;
             graphics.bytes = (bytes, bytes);
         }
+        (Some("rate"), Some(rate)) => {
+            let rate = rate.parse::<usize>().ok().filter(|rate| (1000..=100_000_000).contains(rate));
+            graphics.rate = rate.ok_or("graphics rate takes a number of bytes a second from 1000 to 100000000")?;
+        }
         (Some(name), None) => {
-            let known = Protocol::NAMES.iter().map(|(name, _)| *name).chain(["auto", "bytes"]);
+            let known = Protocol::NAMES.iter().map(|(name, _)| *name).chain(["auto", "bytes", "rate"]);
             let near = problem::nearest(name, known).map(|near| format!(": {near}")).unwrap_or_default();
             let protocol = Protocol::named(name).ok_or_else(|| format!("there are no graphics {name}{near}"))?;
             graphics.forced = Some(protocol);
         }
-        _ => return Err("graphics takes auto, kitty, iterm2, sixel, blocks or bytes N".into()),
+        _ => return Err("graphics takes auto, kitty, iterm2, sixel, blocks, bytes N or rate N".into()),
     }
-    let (playing, still) = state.picture.graphics.bytes;
-    let (width, height) = state.picture.graphics.cell;
+    let Graphics { bytes: (playing, still), cell: (width, height), rate, .. } = state.picture.graphics;
     let taken =
         state.picture.latest.as_ref().map(|shown| format!(", the last took {}", shown.bytes)).unwrap_or_default();
     state.say(format!(
         "graphics: {} (the terminal: {}), cells of {width} x {height} px, at most {playing} bytes a frame while playing, \
-         {still} still{taken}",
+         {still} still, {rate} a second while blocks play{taken}",
         picture::protocol(state).name(),
         state.picture.graphics.found.name(),
     ));

@@ -1,20 +1,24 @@
 //! The picture's cursor, and what it places.
 
 use kurbo::{Point, Vec2};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::command::{Call, Command, Done, command};
 use super::items::go_to;
 use super::transforming::numbers;
+use crate::base::number::rounded;
 use crate::base::pointer::Pointer;
 use crate::base::problem::quoted;
-use crate::render::{overlay, passes};
+use crate::base::text::hex;
+use crate::render::{cpu, overlay, passes};
 use crate::scene::{Edit, address, grips};
 use crate::tui::events::Effect;
 use crate::tui::layout::picture;
+use crate::tui::state::memory::Yanked;
 use crate::tui::state::painting::Sees;
 use crate::tui::state::{Mode, Pane, State, entry, place, spatial};
 use crate::tui::text::numbers::short;
+use crate::tui::text::said::one_word;
 
 pub const COMMANDS: &[Command] = &[
     command("cursor", "[at] X Y", "Move the picture's cursor by X Y, or to a place", cursor).counted(),
@@ -25,7 +29,7 @@ pub const COMMANDS: &[Command] = &[
         .counted_with(&["next", "previous"]),
     command(
         "pointer",
-        "[mark|select|take POINTER|drag POINTER|undrag|drop POINTER|band X Y X Y]",
+        "[mark|select|copy|take POINTER|drag POINTER|undrag|drop POINTER|file PATH|band X Y X Y]",
         "Enter the place of the window's pointer, or move the picture's cursor or something else there",
         pointer,
     )
@@ -183,6 +187,26 @@ fn seen_at(state: &State, at: Point) -> Option<usize> {
     passes::topmost(own.as_ref().unwrap_or(synth), state.play.time, (at.x as usize, at.y as usize))
 }
 
+/// Yanks a place of the picture, also to the terminal's clipboard, there with the color that the frame has.
+fn copied(state: &mut State, at: Point) -> Done {
+    let place = [at.x, at.y].map(|number| rounded(number, 3));
+    let (synth, pixel) = (state.picture.synth.as_ref(), (at.x.max(0.0) as usize, at.y.max(0.0) as usize));
+    let color = synth.and_then(|synth| cpu::color_at(synth, state.play.time, pixel));
+    let color = color.map(|[r, g, b, _]| format!("  #{}", hex(&[r, g, b]))).unwrap_or_default();
+    let text = format!("{}, {}{color}", short(place[0]), short(place[1]));
+    state.memory.yank(Yanked { value: json!(place), name: None });
+    state.ask(Effect::Copy(text.clone()));
+    state.say(format!("{text} yanked"));
+    Ok(())
+}
+
+/// A file that was dropped on a window: a scene is opened as by `:e`, anything else comes into this one with a layer.
+fn brought(state: &mut State, call: &Call, path: &str) -> Done {
+    idle(state)?;
+    let command = if path.ends_with(".json") { "e" } else { "add" };
+    call.obey(state, &format!("{command} {}", one_word(path)))
+}
+
 /// In an entry, types the coordinate of the window's pointer. Otherwise moves the picture's cursor there, and unless the point
 /// is only to be marked, also the point of the row under the cursor, or the end of the jump vector under it.
 fn pointer(state: &mut State, call: &Call) -> Done {
@@ -192,9 +216,13 @@ fn pointer(state: &mut State, call: &Call) -> Done {
         ("drop", pointer) => return dropped(state, call, pointer),
         ("undrag", _) => return undragged(state, call),
         ("band", corners) => return banded(state, call, corners),
+        ("file", path) => return brought(state, call, path),
         _ => {}
     }
     let (x, y) = state.outside.pointer.ok_or(BESIDE)?;
+    if call.text == "copy" {
+        return copied(state, (x, y).into());
+    }
     if call.text == "select" {
         return select(state, call, (x, y).into());
     }

@@ -314,10 +314,11 @@ fn run_of_window(state: &mut State, name: &str) {
     match name {
         "mark-point" => commands::run(state, "pointer mark", None),
         "select-point" => commands::run(state, "pointer select", None),
+        "copy-point" => commands::run(state, "pointer copy", None),
         told if told.starts_with("band ") => commands::run(state, &format!("pointer {told}"), None),
         "next-sight" => commands::run(state, "layout next", None),
         "undrag" => commands::run(state, "pointer undrag", None),
-        told if ["drag ", "drop ", "take "].iter().any(|verb| told.starts_with(verb)) => {
+        told if ["drag ", "drop ", "take ", "file "].iter().any(|verb| told.starts_with(verb)) => {
             commands::run(state, &format!("pointer {told}"), None);
         }
         told => picture::follow_window(state, told),

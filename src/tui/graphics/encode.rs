@@ -140,6 +140,7 @@ mod tests {
             protocol,
             tmux,
             bytes: 100_000,
+            calm: false,
             pass: None,
             clip: None,
             sight: None,

@@ -38,6 +38,8 @@ pub struct TerminalPicture {
 
 /// No picture is reduced further than this, whatever the limit.
 const MOST_REDUCED: usize = 64;
+/// A difference of codes that one hardly sees while a picture plays.
+const HARDLY: u8 = 4;
 
 impl TerminalPicture {
     /// The picture at `time`, reduced until it fits its limit of bytes. The first guess comes from `before`, the last picture.
@@ -81,7 +83,9 @@ impl TerminalPicture {
         loop {
             let made = TerminalPicture::reduced(shown, time, &wanted, (&over, by));
             if made.bytes <= wanted.bytes || by >= MOST_REDUCED {
-                return TerminalPicture { over, ..made };
+                let mut made = TerminalPicture { over, ..made };
+                before.filter(|_| made.wanted.calm).into_iter().for_each(|before| made.keep(before));
+                return made;
             }
             by = (guess(&made, &wanted)).max(by + 1);
         }
@@ -108,6 +112,19 @@ impl TerminalPicture {
         }
         let (cells, bytes) = encode::encode(&frame, by, wanted);
         TerminalPicture { wanted: wanted.clone(), frame, by, over: Vec::new(), reach: Reach::default(), cells, bytes }
+    }
+
+    /// Keeps the dots of the picture before that differ by less than one sees. As each is compared with what is shown, none is
+    /// ever farther from its color than that.
+    fn keep(&mut self, before: &TerminalPicture) {
+        if (before.by, before.wanted.part) != (self.by, self.wanted.part) {
+            return;
+        }
+        for (dot, shown) in self.frame.cells_mut().iter_mut().zip(before.frame.cells()) {
+            if (0..4).all(|c| dot[c].abs_diff(shown[c]) <= HARDLY) {
+                *dot = *shown;
+            }
+        }
     }
 
     /// The color at a place of the picture; `None` if the place is beyond the picture or was not visible.
@@ -143,5 +160,52 @@ fn ground(frame: &mut Frame, (w, h): (usize, usize), part: &Part) {
             let laid = |code: u8| ((u32::from(code) * alpha + ground * (255 - alpha)) / 255) as u8;
             *cell = [laid(cell[0]), laid(cell[1]), laid(cell[2]), 255];
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::protocol::Protocol;
+    use super::*;
+    use crate::layers::parts::marks::View;
+
+    fn shown(codes: [u8; 4], corner: f64) -> TerminalPicture {
+        let part = Part { corner: Point::new(corner, 0.0), scale: 1.0, dots: (2, 2) };
+        let (clip, sight, over) = (None, None, View::default());
+        let (protocol, cells) = (Protocol::Blocks, (2, 1));
+        let wanted = Wanted {
+            part,
+            cells,
+            protocol,
+            tmux: false,
+            bytes: 9,
+            calm: true,
+            pass: None,
+            clip,
+            sight,
+            over,
+            marks: None,
+        };
+        let frame = Frame::from_cells(2, 2, codes.map(|code| [code, 100, 100, 255]).to_vec());
+        TerminalPicture { wanted, frame, by: 1, over: Vec::new(), reach: Reach::default(), cells: None, bytes: 9 }
+    }
+
+    #[test]
+    fn dots_that_hardly_differ_from_what_is_shown_stay_and_none_drifts() {
+        let mut before = shown([10, 20, 30, 40], 0.0);
+        for (made, kept) in [
+            ([10, 20, 30, 40], [10, 20, 30, 40]),
+            ([13, 25, 26, 35], [10, 25, 30, 35]),
+            ([16, 22, 26, 31], [16, 25, 30, 35]),
+            ([16, 20, 25, 30], [16, 20, 25, 30]),
+        ] {
+            let mut next = shown(made, 0.0);
+            next.keep(&before);
+            assert_eq!(next.frame, shown(kept, 0.0).frame);
+            before = next;
+        }
+        let mut elsewhere = shown([17, 20, 25, 30], 1.0);
+        elsewhere.keep(&before);
+        assert_eq!(elsewhere.frame, shown([17, 20, 25, 30], 1.0).frame);
     }
 }

@@ -1,7 +1,6 @@
 //! What the worker finds out about a pixel, and about the fields of a scene.
 
 use super::request::ProbeAt;
-use crate::base::pixels::encode;
 use crate::layers::parts::materials::Materials;
 use crate::layers::parts::moment::Space;
 use crate::layers::parts::readout::ReadOut;
@@ -22,7 +21,6 @@ pub struct Probed {
 impl Probed {
     /// The answer, as `plica probe` has it; `None` if there is no such pixel.
     pub fn new(at: ProbeAt, scene: &Scene, synth: &Synth, materials: &Materials) -> Option<Probed> {
-        let (x, y) = at.pixel;
         let moment = synth.moment(at.time);
         let making = crate::render::making(scene, materials);
         let look = |layer: usize| {
@@ -39,8 +37,7 @@ impl Probed {
                 look(seen.unwrap_or(at.layer))?
             }
         };
-        let within = x < synth.size.0 && y < synth.size.1;
-        let color = within.then(|| encode(*cpu::lattice(synth, at.time, &[x], &[y]).get(0, 0)));
+        let color = cpu::color_at(synth, at.time, at.pixel);
         Some(Probed { at, read, color: color.unwrap_or_default() })
     }
 }

@@ -56,14 +56,18 @@ pub struct Graphics {
     pub tmux: bool,
     /// The most bytes per frame: while playing, and for a still picture.
     pub bytes: (usize, usize),
+    /// The most bytes a second while half-blocks play, on average.
+    pub rate: usize,
 }
 
 /// The most bytes per frame while playing and still, unless `:graphics bytes` has set another limit.
 const BYTES: (usize, usize) = (64_000, 256_000);
+/// The same a second: what a slow line still takes, and keys beside it.
+const RATE: usize = 55_000;
 
 impl Default for Graphics {
     fn default() -> Self {
-        Graphics { forced: None, found: Protocol::Blocks, cell: (8, 16), tmux: false, bytes: BYTES }
+        Graphics { forced: None, found: Protocol::Blocks, cell: (8, 16), tmux: false, bytes: BYTES, rate: RATE }
     }
 }
 
@@ -107,6 +111,8 @@ pub struct Wanted {
     pub tmux: bool,
     /// The most bytes.
     pub bytes: usize,
+    /// Whether dots may keep the color that they had before if the difference is hardly visible, so that they are not sent.
+    pub calm: bool,
     /// The pass to show in place of the frame.
     pub pass: Option<Asked>,
     /// What to show of a clip in place of the scene.

@@ -117,6 +117,7 @@ fn wanted(state: &State) -> Option<Wanted> {
         protocol,
         tmux: graphics.tmux,
         bytes: if state.play.playing { playing } else { still },
+        calm: state.play.playing && protocol == Protocol::Blocks,
         pass: state.picture.pass.clone().filter(|_| state.picture.looking.is_none() && !is_painting(&sight)),
         clip: looking::view(state),
         sight,

@@ -3,13 +3,21 @@
 //! the screen is updated to the present state.
 
 use std::io::{self, ErrorKind, Write, stdout};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use crate::base::system;
 
 /// Whether output is waiting for the terminal.
 static BEHIND: AtomicBool = AtomicBool::new(false);
+
+/// How many bytes were given to the terminal so far.
+static GIVEN: AtomicUsize = AtomicUsize::new(0);
+
+/// How many bytes were given to the terminal so far.
+pub fn given() -> usize {
+    GIVEN.load(Ordering::Relaxed)
+}
 
 /// Whether the terminal has not yet read all that was drawn.
 pub fn is_behind() -> bool {
@@ -57,6 +65,7 @@ impl Pace {
 impl Write for Pace {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.waiting.extend_from_slice(bytes);
+        GIVEN.fetch_add(bytes.len(), Ordering::Relaxed);
         Ok(bytes.len())
     }
 

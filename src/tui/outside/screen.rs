@@ -49,7 +49,7 @@ impl Editor {
             }
         }
         if let Some(begun) = self.drawn.take() {
-            self.throttle.wrote(state, begun.elapsed());
+            self.throttle.wrote(state, begun.elapsed(), pace::given());
         }
         let begun = Instant::now();
         screen.draw(|frame| view::draw(frame, state)).map_err(failed)?;
@@ -57,7 +57,7 @@ impl Editor {
         let state = &self.state;
         match pace::is_behind() {
             true => self.drawn = Some(begun),
-            false => self.throttle.wrote(state, begun.elapsed()),
+            false => self.throttle.wrote(state, begun.elapsed(), pace::given()),
         }
         Ok(())
     }

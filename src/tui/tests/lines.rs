@@ -8,6 +8,7 @@ use super::{check, motion, zone};
 use crate::preview::wire::message::Gesture;
 use crate::tui::commands::update::update;
 use crate::tui::commands::{self, obey};
+use crate::tui::events::Effect;
 use crate::tui::state::{Mode, Pane, State};
 
 fn log(state: &State) -> Vec<&str> {
@@ -119,6 +120,27 @@ pub fn the_pointer_of_a_window_is_kept_as_a_place() {
     press(&mut state, &motion("M"));
     assert_eq!(state.document().json().pointer(&zone("/motion/0/at")), Some(&json!([12.5, 13])));
     assert_eq!(replayed(&state).document().json(), state.document().json());
+}
+
+#[test]
+fn a_window_copies_its_pointer_and_files_that_are_dropped_on_it_come_in() {
+    let gesture = |state: &mut State, command: &str| {
+        update(state, said(Gesture::Command(command.to_owned())));
+        state.message.clone().unwrap().text
+    };
+    let mut state = state();
+    assert!(gesture(&mut state, "copy-point").contains("not over the picture"));
+    update(&mut state, said(Gesture::Pointer { x: 12.53, y: 13.0 }));
+    let effects = update(&mut state, said(Gesture::Command("copy-point".to_owned())));
+    assert!(effects.iter().any(|effect| matches!(effect, Effect::Copy(text) if text == "12.53, 13")), "{effects:?}");
+    assert_eq!(state.message.clone().unwrap().text, "12.53, 13 yanked");
+    press(&mut state, "/ \"motion\" Enter Enter p");
+    assert_eq!(state.memory.yanked.as_ref().map(|yanked| yanked.value.clone()), Some(json!([12.53, 13.0])));
+    press(&mut state, ": \"set title=new\" Enter");
+    assert!(gesture(&mut state, "file /b/other scene.plica.json").contains("unsaved edits"), "the guard of :e");
+    press(&mut state, "u");
+    let told = gesture(&mut state, "file /nowhere/a b.png");
+    assert!(told.contains("a b.png"), "{told}");
 }
 
 #[test]

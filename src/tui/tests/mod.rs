@@ -28,7 +28,7 @@ mod profiles;
 mod recipes;
 mod rowing;
 mod rows;
-mod screens;
+pub mod screens;
 mod sharing;
 mod sketches;
 mod space;

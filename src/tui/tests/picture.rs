@@ -176,6 +176,8 @@ pub fn graphics_are_told_and_set() {
         (": \"graphics sixl\" Enter", "sixel", true),
         (": \"graphics bytes 5\" Enter", "1000", true),
         (": \"graphics bytes 20000\" Enter", "at most 20000 bytes", false),
+        (": \"graphics rate 9000\" Enter", "9000 a second while blocks play", false),
+        (": \"graphics rate 9\" Enter", "from 1000", true),
         (": \"vectors\" Enter", "vectors color=plain length=1 equal=off longest=auto steepest=auto opacity=1", false),
         (": \"vectors color=curl length=2\" Enter", "color=curl length=2 equal=off", false),
         (": \"vectors lenght=2\" Enter", "did you mean \"length\"?", true),
