@@ -1,6 +1,8 @@
 //! Draws sprites into a frame. Every pixel meets them in the same order, whatever the number of threads: the frame is cut
 //! into strips, and each strip draws all its sprites one after the other.
 
+use std::cmp::Reverse;
+
 use rayon::prelude::*;
 
 use super::cells::{Covering, covered};
@@ -28,7 +30,7 @@ pub struct Canvas<'a> {
 pub fn in_order(blend: Mixing, splats: &[Splat]) -> Vec<&Splat> {
     let mut order: Vec<&Splat> = splats.iter().filter(|splat| splat.opacity > 0.0).collect();
     if blend == Mixing::Over {
-        order.sort_by_key(|splat| std::cmp::Reverse((1024.0 * splat.depth + 0.5).floor() as i64));
+        order.sort_by_key(|splat| Reverse((1024.0 * splat.depth + 0.5).floor() as i64));
     }
     order
 }
@@ -62,11 +64,11 @@ pub fn draw(synth: &Synth, splats: &[Splat], canvas: Canvas) {
     let drawn = drawn(synth.blend, splats, &places);
     let bins = bins(&drawn, places[1].len());
     let cells = ROWS * width;
-    let strips = out.par_chunks_mut(cells).zip(depth.par_chunks(cells)).zip(bins).enumerate().with_max_len(1);
-    strips.for_each_init(Scratch::default, |scratch, (i, ((out, depth), bin))| {
-        if bin.is_empty() {
-            return;
-        }
+    let strips = out.chunks_mut(cells).zip(depth.chunks(cells)).zip(bins).enumerate();
+    let mut strips: Vec<_> = strips.filter(|(_, (_, bin))| !bin.is_empty()).collect();
+    // Those with most to do first, each to the thread that has nothing to do: none waits long for the last one.
+    strips.sort_by_key(|(_, (_, bin))| Reverse(bin.len()));
+    strips.into_iter().par_bridge().for_each_init(Scratch::default, |scratch, (i, ((out, depth), bin))| {
         vectorised(
             #[inline(always)]
             || {
