@@ -215,6 +215,11 @@ pub trait Technique: Any + Send + Sync {
         Vec::new()
     }
 
+    /// What the colors mean in which a pass of codes is looked at, by names.
+    fn pass_colors(&self, _pass: &Pass) -> Vec<(&str, [u8; 3])> {
+        Vec::new()
+    }
+
     /// Whether the layer shows something in a pass: one that all layers in space share, or one that its technique adds.
     fn has_pass(&self, _pass: &Pass) -> bool {
         true

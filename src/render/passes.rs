@@ -97,6 +97,14 @@ impl Asked {
         empty.then(|| format!("no layer has {}: the picture is empty", self.words(scene)))
     }
 
+    /// What its colors mean where it is looked at, by names.
+    #[cfg(feature = "window")]
+    pub fn colors(&self, scene: &Scene) -> Vec<(String, [u8; 3])> {
+        let layers = scene.layers.iter().enumerate().filter(|(i, _)| self.layer.is_none_or(|only| only == *i));
+        let colors = layers.flat_map(|(_, layer)| layer.technique().pass_colors(self.pass));
+        colors.map(|(name, color)| (name.to_owned(), color)).collect()
+    }
+
     /// What is looked at in place of it, if it is not that itself.
     pub fn looked_at(&self) -> Asked {
         let pass = if let Holds::Codes(other) = self.pass.holds { other } else { self.pass };

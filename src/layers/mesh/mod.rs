@@ -149,6 +149,10 @@ impl Technique for MeshLayer {
         self.drawing().map(|own| own.pass_names(pass)).unwrap_or_default()
     }
 
+    fn pass_colors(&self, pass: &Pass) -> Vec<(&str, [u8; 3])> {
+        self.surface.slot().pass_colors(pass)
+    }
+
     fn has_pass(&self, pass: &Pass) -> bool {
         match pass {
             pass if pass::PASSES.contains(&pass) => true,

@@ -57,6 +57,11 @@ pub trait SurfaceSlot {
         Vec::new()
     }
 
+    /// See `Technique::pass_colors`.
+    fn pass_colors(&self, _pass: &Pass) -> Vec<(&str, [u8; 3])> {
+        Vec::new()
+    }
+
     /// Whether it tells something of each of its places ([`StillSurface::told`]) and has passes.
     fn explains(&self) -> bool {
         false

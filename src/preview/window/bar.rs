@@ -316,9 +316,13 @@ mod tests {
 
     #[test]
     fn the_bar_says_the_most_important_thing() {
-        let mut state = State { selected: Some("face/eye".into()), ..state() };
+        let mut state = state();
         state.words.notice = Some("joined".into());
-        assert_eq!(said(&state), ("face/eye   joined".into(), DIM));
+        state.select(Some("/face".into()), Some("face".into()));
+        assert_eq!(said(&state), ("face   joined".into(), DIM));
+        state.select(Some("/eye".into()), Some("face/eye".into()));
+        assert_eq!(said(&state).0, "face/eye", "that has been read");
+        state.words.notice = Some("joined".into());
         state.otherwise = Some("without 2 muted".into());
         assert_eq!(said(&state).0, "without 2 muted   face/eye   joined");
         state.passes = vec!["shade"];

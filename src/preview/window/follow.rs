@@ -153,8 +153,8 @@ impl App {
 
     fn select(&mut self, pointer: Option<String>) {
         let named = pointer.as_deref().zip(self.shown.as_ref());
-        self.state.selected = named.and_then(|(pointer, show)| name(&show.scene, pointer));
-        self.state.selection = pointer;
+        let named = named.and_then(|(pointer, show)| name(&show.scene, pointer));
+        self.state.select(pointer, named);
         self.redraw();
     }
 

@@ -1,5 +1,5 @@
-//! Legends of the vector field: what the length of an arrow and a color mean. They stand in the lower corners, and above one
-//! another where the window is narrow.
+//! Legends: what the length of an arrow and a color of the vector field mean, and the colors of a pass. They stand in the
+//! lower corners, and above one another where the window is narrow.
 
 use std::rc::Rc;
 
@@ -28,6 +28,9 @@ const EQUAL_PX: f64 = 22.0;
 /// Between an arrow and its text.
 const GAP_PX: f64 = 12.0;
 
+/// Between two names, in logical pixels.
+const LEAD_PX: f64 = 6.0;
+
 /// Draws the legends of what is shown into what is free of the area.
 pub fn draw(canvas: &mut Canvas, state: &State, letters: &Letters, free: Rect) {
     if !state.has_picture() || !state.shows("view-legends") {
@@ -40,10 +43,16 @@ pub fn draw(canvas: &mut Canvas, state: &State, letters: &Letters, free: Rect) {
     // Where nothing jumps there are no colors to explain.
     let colors = (colors && state.reach.longest_px > 0.0).then(|| Colors::new(state, letters));
     let bar = needs(Legend::Arrows).then(|| ScaleBar::new(state, letters)).flatten();
-    let sizes = [colors.as_ref().map(|colors| colors.size), bar.as_ref().map(|bar| bar.size)];
-    let [colors_at, bar_at] = places(sizes, free, MARGIN_PX * state.scale);
+    let names = Names::new(state, letters, free);
+    let left = names.as_ref().map(|names| names.size).or(bar.as_ref().map(|bar| bar.size));
+    let sizes = [colors.as_ref().map(|colors| colors.size), left];
+    let [colors_at, left_at] = places(sizes, free, MARGIN_PX * state.scale);
     colors.zip(colors_at).into_iter().for_each(|(colors, at)| colors.draw(canvas, state, at));
-    bar.zip(bar_at).into_iter().for_each(|(bar, at)| bar.draw(canvas, state, at));
+    match (names, bar, left_at) {
+        (Some(names), _, Some(at)) => names.draw(canvas, state, at),
+        (None, Some(bar), Some(at)) => bar.draw(canvas, state, at),
+        _ => {}
+    }
 }
 
 /// Where to place two boxes of these sizes: the first in the right corner, the second in the left corner, or above the first
@@ -154,9 +163,64 @@ impl ScaleBar {
     }
 }
 
+/// The names of what the colors of a pass mean, as many as have room.
+struct Names {
+    /// Each with its color; one without says how many are left out.
+    rows: Vec<(Option<[u8; 3]>, Rc<Text>)>,
+    size: Size,
+}
+
+impl Names {
+    fn new(state: &State, letters: &Letters, free: Rect) -> Option<Names> {
+        let (scale, named) = (state.scale, &state.named_colors);
+        let room = ((free.height() / scale - 4.0 * MARGIN_PX) / (TEXT_PX + LEAD_PX)).max(0.0) as usize;
+        let shown = if named.len() > room { room.saturating_sub(1) } else { named.len() };
+        let row = |(name, color): &(String, [u8; 3])| (Some(*color), letters.line(name, TEXT_PX * scale));
+        let more = (shown < named.len()).then(|| format!("and {} more", named.len() - shown));
+        let more = more.map(|text| (None, letters.line(&text, TEXT_PX * scale)));
+        let rows: Vec<_> = named[..shown].iter().map(row).chain(more).collect();
+        let widest = rows.iter().map(|(_, text)| text.width).reduce(f64::max).filter(|_| room > 0)?;
+        let height = rows.len() as f64 * (TEXT_PX + LEAD_PX) + 2.0 * MARGIN_PX - LEAD_PX;
+        let size = Size::new(widest + (TEXT_PX + GAP_PX + 2.0 * MARGIN_PX) * scale, height * scale);
+        Some(Names { rows, size })
+    }
+
+    fn draw(&self, canvas: &mut Canvas, state: &State, at: Rect) {
+        let scale = state.scale;
+        canvas.rect(at, 4.0 * scale, PANEL);
+        let from = Point::new(at.x0 + MARGIN_PX * scale, at.y0 + MARGIN_PX * scale);
+        for (i, (color, text)) in self.rows.iter().enumerate() {
+            let top = from.y + i as f64 * (TEXT_PX + LEAD_PX) * scale;
+            let radius = TEXT_PX * scale / 2.0;
+            if let Some([r, g, b]) = *color {
+                canvas.disc(Point::new(from.x + radius, top + radius), radius, [r, g, b, 255]);
+            }
+            canvas.text(text, Point::new(from.x + (TEXT_PX + GAP_PX) * scale, top), TEXT);
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_colors_of_a_pass_are_named_as_far_as_there_is_room() {
+        let letters = Letters::default();
+        let free = Rect::new(0.0, 0.0, 640.0, 400.0);
+        let mut state = State::for_tests();
+        assert!(Names::new(&state, &letters, free).is_none());
+        for (count, left_out) in [(3, 0), (256, 1)] {
+            state.named_colors = (0..count).map(|i| (format!("view {i}"), [i as u8; 3])).collect();
+            let names = Names::new(&state, &letters, free).unwrap();
+            assert!(names.size.height <= free.height() - 2.0 * MARGIN_PX, "{:?}", names.size);
+            assert_eq!(names.rows.iter().filter(|(color, _)| color.is_none()).count(), left_out);
+            let mut canvas = Canvas::default();
+            draw(&mut canvas, &state, &letters, free);
+            assert!(!canvas.strokes.is_empty());
+        }
+        assert!(Names::new(&state, &letters, Rect { y1: 40.0, ..free }).is_none());
+    }
 
     #[test]
     fn legends_stand_beside_or_above_one_another_within_the_window_or_not_at_all() {

@@ -246,6 +246,7 @@ impl OpenWindow {
         let other = other.map(|(synth, t)| (seen(synth, own.as_ref()), t));
         let asked = state.pass.as_deref().map(|pass| Asked::parse(pass, &show.scene)).transpose();
         state.no_pass = asked.as_ref().err().cloned();
+        state.named_colors = asked.iter().flatten().flat_map(|asked| asked.colors(&show.scene)).collect();
         // Passes are drawn by the CPU, and so are sprites, strokes and view maps where the CPU would only pretend to be a GPU: that
         // takes several times as long.
         let much = show.has_sprites() || show.frames.takes_long();

@@ -54,6 +54,8 @@ pub struct State {
     pub pass: Option<String>,
     /// Why it cannot be shown.
     pub no_pass: Option<String>,
+    /// What the colors of the pass that is shown mean, by names.
+    pub named_colors: Vec<(String, [u8; 3])>,
     /// Whether the picture is still being made: an older one shows.
     pub drawing: bool,
     /// JSON pointer of what is selected in the editor.
@@ -134,6 +136,7 @@ impl Default for State {
             passes: Vec::new(),
             pass: None,
             no_pass: None,
+            named_colors: Vec::new(),
             drawing: false,
             selection: None,
             pointer: None,
@@ -163,6 +166,14 @@ impl Default for State {
 }
 
 impl State {
+    /// Takes what is selected, and its name. What was said of the link before something else was selected has been read.
+    pub fn select(&mut self, pointer: Option<String>, name: Option<String>) {
+        if self.selection.is_some() && self.selection != pointer {
+            self.words.notice = None;
+        }
+        (self.selection, self.selected) = (pointer, name);
+    }
+
     /// The part of the window in which the picture stands.
     pub fn area(&self) -> Size {
         Size::new(self.window.width, (self.window.height - (BAR_PX * self.scale).round()).max(1.0))

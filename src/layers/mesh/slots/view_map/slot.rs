@@ -14,12 +14,14 @@ use super::wanted::{laid_flat, misfits, wanted};
 use super::{atlas, bundle, check, lay, marks, passes, plan, warnings};
 use crate::base::budget::Share;
 use crate::base::mesh::Mesh;
+use crate::base::pixels::encode;
 use crate::base::pointer::Pointer;
 use crate::base::problem::Problem;
 use crate::layers::mesh::added::Added;
 use crate::layers::mesh::surface::{Before, ReadySurface, SurfaceSlot};
 use crate::layers::parts::bundle::Form;
 use crate::layers::parts::materials::{List, Materials, Of, Use, What};
+use crate::layers::parts::pass::Pass;
 use crate::layers::parts::shots::Lying;
 use crate::layers::ready::Making;
 
@@ -62,6 +64,16 @@ impl SurfaceSlot for ViewMap {
             all.into_iter().filter_map(move |(field, name)| Some((format!("/views/{i}/{field}"), name?)))
         });
         named.map(|(at, name)| Use { at, of: Of::Name(List::Images, name), what: What::Picture }).collect()
+    }
+
+    fn pass_colors(&self, pass: &Pass) -> Vec<(&str, [u8; 3])> {
+        let views = self.views.iter().enumerate().filter(|(_, view)| view.active && *pass == passes::COVERAGE);
+        let code = |number: usize| {
+            let [r, g, b] = passes::color(number).map(|light| light as f32);
+            let [r, g, b, _] = encode([r, g, b, 1.0]);
+            [r, g, b]
+        };
+        views.map(|(i, view)| (view.name.as_str(), code(i + 1))).collect()
     }
 
     fn lying(&self) -> Option<Vec<Lying<'_>>> {

@@ -315,6 +315,20 @@ fn arrays_hold_what_is_seen_in_their_directions() {
 }
 
 #[test]
+fn the_colors_of_coverage_are_named_by_the_views_that_count() {
+    use crate::layers::mesh::surface::SurfaceSlot;
+    let view =
+        |name: &str, active: bool| serde_json::json!({ "name": name, "image": "a", "camera": {}, "active": active });
+    let views = [view("a", true), view("b", false), view("c", true)];
+    let own: super::model::ViewMap = serde_json::from_value(serde_json::json!({ "views": views })).unwrap();
+    let named: Vec<&str> = own.pass_colors(&super::passes::COVERAGE).iter().map(|(name, _)| *name).collect();
+    assert_eq!(named, ["a", "c"]);
+    // HSV 0, 0.65, 0.95.
+    assert_eq!(own.pass_colors(&super::passes::COVERAGE)[0].1, [242, 85, 85]);
+    assert!(own.pass_colors(&super::passes::DEPENDENT).is_empty());
+}
+
+#[test]
 fn a_camera_of_a_world_whose_z_is_up_is_told_as_one() {
     let mut high = (*squares(&[0.0])).clone();
     high.vertices.iter_mut().for_each(|vertex| vertex.position.y += 9.0);
