@@ -63,37 +63,34 @@ impl Binning {
         Binning { tiles: tiles.into(), focal_px, facets: Vec::new(), found: Vec::new() }
     }
 
-    /// What was taken, sorted.
-    pub fn sorted(self) -> Bins {
+    /// What was taken since the last time, sorted.
+    pub fn sorted(&mut self) -> Bins {
         let side = |k: usize| {
             let sides = self.found.iter().map(|found| found.tiles[k]);
             let [from, to] = sides.fold([u16::MAX, 0], |[least, most], [from, to]| [least.min(from), most.max(to)]);
             usize::from(from.min(to))..usize::from(to)
         };
         let [columns, rows] = [side(0), side(1)];
-        let mut bins = Bins {
-            begins: vec![0; columns.len() * rows.len() + 1],
-            facets: self.facets,
-            columns,
-            rows,
-            kernels: Vec::new(),
-        };
-        for (x, y) in self.found.iter().flat_map(Found::tiles) {
-            let tile = bins.tile(x, y);
-            bins.begins[tile + 1] += 1;
+        let begins = vec![0; columns.len() * rows.len() + 1];
+        let mut bins = Bins { begins, facets: std::mem::take(&mut self.facets), columns, rows, kernels: Vec::new() };
+        for found in &self.found {
+            found.tiles(|x, y| {
+                let tile = bins.tile(x, y);
+                bins.begins[tile + 1] += 1;
+            });
         }
         for tile in 1..bins.begins.len() {
             bins.begins[tile] += bins.begins[tile - 1];
         }
         let (mut next, count) = (bins.begins.clone(), bins.begins.last().map_or(0, |count| *count as usize));
-        bins.kernels.resize(count, Kernel::default());
-        for found in &self.found {
-            for (x, y) in found.tiles() {
+        bins.kernels = vec![Kernel::default(); count];
+        for found in self.found.drain(..) {
+            found.tiles(|x, y| {
                 let at = found.at - DVec2::new(x as f64, y as f64) * TILE as f64;
                 let next = &mut next[bins.tile(x, y)];
                 bins.kernels[*next as usize] = Kernel { at: at.as_vec2().to_array(), ..found.kernel };
                 *next += 1;
-            }
+            });
         }
         bins
     }
@@ -108,7 +105,7 @@ impl Extend<Impulse> for Binning {
                 self.facets.push(Facet { triangle, plane: impulse.plane });
             }
             let (from, to) = (impulse.at - impulse.radius_px, impulse.at + impulse.radius_px);
-            let tile = |at: f64, most: f64| (at * (1.0 / TILE as f64)).clamp(0.0, most) as u16;
+            let tile = |at: f64, most: f64| (at * (1.0 / TILE as f64)).clamp(0.0, most) as i32 as u16;
             let side = |from: f64, to: f64, most: f64| [tile(from, most), tile(to + TILE as f64, most)];
             let kernel = Kernel {
                 at: [0.0; 2],
@@ -126,10 +123,15 @@ impl Extend<Impulse> for Binning {
 }
 
 impl Found {
-    /// The columns and rows of the tiles, row after row.
-    fn tiles(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
-        let [columns, rows] = self.tiles.map(|[from, to]| usize::from(from)..usize::from(to));
-        rows.flat_map(move |y| columns.clone().map(move |x| (x, y)))
+    /// Calls `each` with the columns and rows of the tiles, row after row.
+    #[inline(always)]
+    fn tiles(&self, mut each: impl FnMut(usize, usize)) {
+        let [columns, rows] = self.tiles;
+        for y in rows[0]..rows[1] {
+            for x in columns[0]..columns[1] {
+                each(usize::from(x), usize::from(y));
+            }
+        }
     }
 }
 

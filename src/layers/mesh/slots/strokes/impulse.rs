@@ -82,20 +82,19 @@ pub struct Impulse {
 /// Tells how much of an impulse counts.
 pub type Weight<'a> = &'a (dyn Fn(&Impulse) -> f64 + Sync);
 
-/// All impulses of a noise that may be seen in the frame: by triangle, piece and number, in lumps. `visible` tells how much of
-/// each is seen, where that counts.
-pub fn impulses<L: Extend<Impulse> + Send>(
+/// All impulses of a noise that may be seen in the frame: by triangle, piece and number, in lumps, each of which `done` makes
+/// something of. `visible` tells how much of each is seen, where that counts.
+pub fn impulses<L: Extend<Impulse>, R: Send>(
     surface: &Surface,
     recipe: &Recipe,
     aim: &Aim,
     visible: Option<Weight>,
-    lump: impl Fn() -> L + Sync,
-) -> Vec<L> {
+    (lump, done): (impl Fn() -> L + Sync + Send, impl Fn(&mut L) -> R + Sync + Send),
+) -> Vec<R> {
     let making = Making { surface, recipe, aim, visible };
     let count = surface.mesh.triangles.len() as u32;
     let size = count.div_ceil(LUMPS).clamp(1, LUMP);
-    let lumps = (0..count.div_ceil(size)).into_par_iter().map(|i| {
-        let mut lump = lump();
+    let lumps = (0..count.div_ceil(size)).into_par_iter().map_init(lump, |lump, i| {
         let mut facet: Option<(u32, Option<(Facet, DVec3)>)> = None;
         surface.pieces.of(i * size..((i + 1) * size).min(count), |piece| {
             if is_set(surface.stop) {
@@ -106,10 +105,10 @@ pub fn impulses<L: Extend<Impulse> + Send>(
                 facet = Some((piece.triangle, own));
             }
             if let Some((_, Some((facet, plane)))) = &facet {
-                making.piece((facet, *plane), piece, &mut lump);
+                making.piece((facet, *plane), piece, lump);
             }
         });
-        lump
+        done(lump)
     });
     lumps.collect()
 }
@@ -175,9 +174,9 @@ fn throws([triangle, piece]: [u32; 2], recipe: &Recipe, most: f64, mut each: imp
     // The rank grows by 1, from 0 on.
     while f64::from(number) * FADE < most {
         let numbers: [u32; LANES] = std::array::from_fn(|k| number + k as u32);
-        let hashed = |key: u32| pcg4d_lanes([[triangle; LANES], [piece; LANES], numbers, [key; LANES]]);
-        let [x, y, phase, rank] = hashed(recipe.key);
-        let [spread, ..] = hashed(recipe.key ^ SECOND);
+        let (triangles, pieces) = ([triangle; LANES], [piece; LANES]);
+        let [x, y, phase, rank] = pcg4d_lanes([triangles, pieces, numbers, [recipe.key; LANES]]);
+        let [spread, ..] = pcg4d_lanes([triangles, pieces, numbers, [recipe.key ^ SECOND; LANES]]);
         let mut thrown = Thrown {
             first: [triangle, piece, number],
             place: [x.map(unit), y.map(unit)],
@@ -262,9 +261,12 @@ impl Making<'_> {
             right[k] = eye.middle_px.x + x[k] * (eye.focal_px * inverse);
             down[k] = eye.middle_px.y - y[k] * (eye.focal_px * inverse);
             let wanted = density * (inverse * inverse * inverse) / (larger[k] * larger[k]);
+            factors[k] = factor(wanted, thrown.rank[k]);
+        }
+        for k in 0..LANES {
             let half = recipe.radius_px * larger[k];
-            let meets = -z[k] >= NEAR_M && meets((right[k], down[k]), half, surface.size_px);
-            factors[k] = if meets { factor(wanted, thrown.rank[k]) } else { 0.0 };
+            let is_in = (-z[k] >= NEAR_M) & meets((right[k], down[k]), half, surface.size_px);
+            factors[k] = if is_in { factors[k] } else { 0.0 };
         }
         for k in (0..LANES).filter(|k| factors[*k] > 0.0) {
             let dice = thrown.one(k);
@@ -290,7 +292,7 @@ impl Making<'_> {
 /// How much an impulse of this rank counts where so many are wanted.
 #[inline(always)]
 pub fn factor(wanted: f64, rank: f64) -> f64 {
-    let counted = wanted.min(MOST);
+    let counted = if wanted < MOST { wanted } else { MOST };
     (counted / (FADE * rank) - 1.0).clamp(0.0, 1.0) * (wanted / counted).sqrt()
 }
 

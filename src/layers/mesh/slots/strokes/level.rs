@@ -107,15 +107,20 @@ impl Level {
     }
 
     /// Whether a kernel covers all of the layer in these columns and rows of the tile, or nothing; `None` if that differs. It is
-    /// one on this plane, and reaches so far from it, in 1 / depth.
+    /// one on this plane, and reaches so far from it, by 1 / depth times a scale.
     #[inline(always)]
-    pub fn covered(&self, (plane, reach): (DVec3, f64), columns: &Range<usize>, rows: &Range<usize>) -> Option<bool> {
+    pub fn covered(
+        &self,
+        (plane, scale, reach): (DVec3, f64, f64),
+        columns: &Range<usize>,
+        rows: &Range<usize>,
+    ) -> Option<bool> {
         let apart = self.plane - plane;
         let added = |x: f64, y: f64| apart.x * (self.corner.x + x) + apart.y * (self.corner.y + y) + apart.z;
         let spread = |wide: f64, high: f64| apart.x.abs() * wide + apart.y.abs() * high;
-        let told = |Away { least, most }: Away| match most <= reach * (1.0 - SURE) {
+        let told = |Away { least, most }: Away| match most * scale <= reach * (1.0 - SURE) {
             true => Some(true),
-            false => (least >= 2.0 * reach * (1.0 + SURE)).then_some(false),
+            false => (least * scale >= 2.0 * reach * (1.0 + SURE)).then_some(false),
         };
         let half = |range: &Range<usize>| (range.len() - 1) as f64 / 2.0;
         let (wide, high) = (half(columns), half(rows));

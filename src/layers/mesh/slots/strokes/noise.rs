@@ -1,10 +1,9 @@
 //! One noise of a layer in one frame: from its description to its value at every pixel.
 
 use glam::{DMat3, DVec2, DVec3};
-use rayon::prelude::*;
 
 use super::aim::{Aim, Follows, Grows};
-use super::bins::{Binning, Bins};
+use super::bins::Binning;
 use super::impulse::{Impulse, Recipe, Weight, impulses};
 use super::model::{Along, Anchor, By, Direction, Noise as Wanted, Trim as Ends, Vary};
 use super::sum::{InFrame, Noise, Trim, covers, sum};
@@ -77,7 +76,7 @@ impl<'a> Scene<'a> {
 
     /// All impulses of one of its noises; `None` for a texture, which has none in the frame.
     pub fn impulses(&self, wanted: &Wanted) -> Option<Vec<Impulse>> {
-        let lumps = self.aimed(wanted, |anchor, aim| self.lumps(wanted, (anchor, aim), Vec::new));
+        let lumps = self.aimed(wanted, |anchor, aim| self.lumps(wanted, (anchor, aim), (Vec::new, std::mem::take)));
         Some(lumps?.concat())
     }
 
@@ -156,25 +155,25 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// The impulses of a noise in lumps, in order; `None` for a texture, which has none in the frame.
-    fn lumps<L: Extend<Impulse> + Send>(
+    /// What `done` makes of the lumps of impulses of a noise, in order; `None` for a texture, which has none in the frame.
+    fn lumps<L: Extend<Impulse>, R: Send>(
         &self,
         wanted: &Wanted,
         (anchor, aim): (Anchor, &Aim),
-        lump: impl Fn() -> L + Sync,
-    ) -> Option<Vec<L>> {
+        (lump, done): (impl Fn() -> L + Sync + Send, impl Fn(&mut L) -> R + Sync + Send),
+    ) -> Option<Vec<R>> {
         let recipe = self.recipe(wanted);
         match anchor {
             Anchor::Surface => {
                 let visible = Visible::new(&self.shown, wanted.reach);
                 let visible = |impulse: &Impulse| visible.of(impulse);
                 let visible: Option<Weight> = (self.trim(wanted) == Trim::Object).then_some(&visible);
-                Some(impulses(&self.surface, &recipe, aim, visible, lump))
+                Some(impulses(&self.surface, &recipe, aim, visible, (lump, done)))
             }
             Anchor::Screen => {
                 let mut lump = lump();
                 lump.extend(grid::impulses(self.shown.size_px, &recipe, aim.drawn));
-                Some(vec![lump])
+                Some(vec![done(&mut lump)])
             }
             Anchor::Texture => None,
         }
@@ -182,12 +181,9 @@ impl<'a> Scene<'a> {
 
     fn made(&self, wanted: &Wanted, anchor: Anchor, aim: &Aim) -> Noise {
         let shown = &self.shown;
-        let lumps = self.lumps(wanted, (anchor, aim), || Binning::new(shown.size_px, shown.focal_px));
-        let mut found = match lumps {
-            Some(lumps) => {
-                let lumps: Vec<Bins> = lumps.into_par_iter().map(Binning::sorted).collect();
-                sum(shown, &lumps, (wanted.overlap, wanted.regularity), self.trim(wanted))
-            }
+        let binning = (|| Binning::new(shown.size_px, shown.focal_px), Binning::sorted);
+        let mut found = match self.lumps(wanted, (anchor, aim), binning) {
+            Some(lumps) => sum(shown, &lumps, (wanted.overlap, wanted.regularity), self.trim(wanted)),
             None => flat::sum(&self.surface, shown, &self.recipe(wanted), aim, self.px_per_m(), wanted.reach),
         };
         if wanted.even {

@@ -118,7 +118,7 @@ pub fn sum(shown: &InFrame, lumps: &[Bins], (overlap, waves): (f64, f64), trim: 
             .for_each(|(tile, (values, shares))| tile.push([values, shares]));
     }
     let tiles = tiles.into_par_iter().zip(shown.levels()).enumerate();
-    tiles.for_each_init(Sums::default, |sums, (i, (mut out, level))| {
+    tiles.for_each_init(Sums::new, |sums, (i, (mut out, level))| {
         let Some(level) = level else { return };
         let (x, y) = (i % across, i / across);
         let size = (out[0][0].len(), out.len());
@@ -128,6 +128,7 @@ pub fn sum(shown: &InFrame, lumps: &[Bins], (overlap, waves): (f64, f64), trim: 
                 let mut tile =
                     Tile { shown, corner: (x * TILE, y * TILE), size, trim, waves: waves as f32, level, sums };
                 tile.sums.clear();
+                tile.sums.resize(TILE, [[0.0; STRIDE]; 2]);
                 for lump in lumps {
                     tile.add_all(&lump.facets, lump.of(x, y));
                 }
@@ -138,21 +139,8 @@ pub fn sum(shown: &InFrame, lumps: &[Bins], (overlap, waves): (f64, f64), trim: 
     noise
 }
 
-/// Sums of kernels and of their variances, in rows of `STRIDE`.
-#[derive(Default)]
-struct Sums {
-    value: Vec<f32>,
-    power: Vec<f32>,
-}
-
-impl Sums {
-    fn clear(&mut self) {
-        for sums in [&mut self.value, &mut self.power] {
-            sums.clear();
-            sums.resize(STRIDE * TILE, 0.0);
-        }
-    }
-}
+/// The sums of a tile, row by row: of kernels, and of their variances.
+type Sums = Vec<[[f32; STRIDE]; 2]>;
 
 /// A part of the frame.
 struct Tile<'a> {
@@ -199,7 +187,7 @@ impl Tile<'_> {
         let covered = match self.trim {
             Trim::Object => Some(true),
             Trim::Triangle => None,
-            Trim::Depth(reach) => self.level.covered((facet.plane, reach / f64::from(kernel.scale)), &columns, &rows),
+            Trim::Depth(reach) => self.level.covered((facet.plane, f64::from(kernel.scale), reach), &columns, &rows),
         };
         if covered == Some(false) {
             return;
@@ -236,15 +224,17 @@ impl Tile<'_> {
     /// Writes the noise and its variance that the sums make.
     #[inline(always)]
     fn finish(&self, scale: &Scale, out: &mut [[&mut [f32]; 2]]) {
-        let sums = self.sums.value.chunks(STRIDE).zip(self.sums.power.chunks(STRIDE));
-        for (row, ([values, shares], (value, power))) in out.iter_mut().zip(sums).enumerate() {
+        for (row, ([values, shares], sums)) in out.iter_mut().zip(&*self.sums).enumerate() {
             let first = (self.corner.1 + row) * self.shown.size_px.0 + self.corner.0;
-            let triangles = &self.shown.triangle[first..first + self.size.0];
-            for (x, triangle) in triangles.iter().enumerate() {
-                let (own, found) = (*triangle != u32::MAX, scale.of(value[x], power[x]));
-                values[x] = if own { found.0 } else { 0.0 };
-                shares[x] = if own { found.1 } else { 0.0 };
+            let (mut triangles, [mut value, mut power]) = ([u32::MAX; STRIDE], *sums);
+            triangles[..self.size.0].copy_from_slice(&self.shown.triangle[first..first + self.size.0]);
+            for x in 0..STRIDE {
+                let (own, found) = (triangles[x] != u32::MAX, scale.of(value[x], power[x]));
+                value[x] = if own { found.0 } else { 0.0 };
+                power[x] = if own { found.1 } else { 0.0 };
             }
+            values.copy_from_slice(&value[..self.size.0]);
+            shares.copy_from_slice(&power[..self.size.0]);
         }
     }
 }
@@ -263,20 +253,23 @@ impl Block<'_> {
     /// Adds it, so much of it as covers each pixel of a row.
     #[inline(always)]
     fn add(&self, sums: &mut Sums, covers: impl Fn(usize) -> [f32; LANES]) {
-        let first = self.rows.start * STRIDE + self.left;
-        let rows = sums.value[first..].chunks_mut(STRIDE).zip(sums.power[first..].chunks_mut(STRIDE));
-        let ([cosines, sines, squares], down) = (self.across, self.down.each_ref().map(|line| line.as_flattened()));
-        for (k, (value, power)) in rows.take(self.rows.len()).enumerate() {
-            let (Some(values), Some(powers)) = (value.first_chunk_mut(), power.first_chunk_mut()) else { return };
-            let ([a, b, c], covers) = (down.map(|line| line[k]), covers(self.rows.start + k));
+        let ([cosines, sines, squares], [a, b, c]) =
+            (self.across, self.down.each_ref().map(|line| line.as_flattened()));
+        let (squares, own) = (squares.map(|square| 0.5 * square), self.left..self.left + LANES);
+        let down = a.iter().zip(b).zip(c);
+        for ((row, ((&a, &b), &c)), y) in sums[self.rows.clone()].iter_mut().zip(down).zip(self.rows.start..) {
+            let [values, powers] = row.each_mut().map(|sums| &mut sums[own.clone()]);
             // Copies, so that the compiler sees that none overlaps another.
-            let ([mut value, mut power], c): ([[f32; LANES]; 2], f32) = ([*values, *powers], 0.5 * c);
+            let ([mut value, mut power], covers) = ([[0.0; LANES]; 2], covers(y));
+            value.copy_from_slice(values);
+            power.copy_from_slice(powers);
             for k in 0..LANES {
                 let cover = covers[k];
                 value[k] = fused(b * cover, -sines[k], fused(a * cover, cosines[k], value[k]));
                 power[k] = fused(c * cover * cover, squares[k], power[k]);
             }
-            (*values, *powers) = (value, power);
+            values.copy_from_slice(&value);
+            powers.copy_from_slice(&power);
         }
     }
 }
@@ -318,20 +311,21 @@ pub fn variance(overlap: f64) -> f32 {
 
 /// What sums are divided by.
 struct Scale {
-    variance: f32,
+    /// 1 / the variance on average.
+    often: f32,
     least: f32,
 }
 
 impl Scale {
     fn new(overlap: f64) -> Scale {
         let variance = variance(overlap);
-        Scale { variance, least: variance * LEAST }
+        Scale { often: 1.0 / variance, least: variance * LEAST }
     }
 
     /// A noise and its variance by the sums of kernels and of their variances.
     #[inline(always)]
     fn of(&self, sum: f32, power: f32) -> (f32, f32) {
-        (sum / power.max(self.least).sqrt(), power / self.variance)
+        (sum / power.max(self.least).sqrt(), power * self.often)
     }
 }
 
