@@ -13,7 +13,6 @@ use crate::base::pointer::Pointer;
 use crate::layers::parts::marks::{Hit, Mark, Overlay, View, When};
 use crate::layers::parts::moment::{Columns, Moment};
 use crate::layers::parts::vectors::{Reach, VectorLook};
-use crate::layers::ready::Ready;
 use crate::layers::space::hidden::Depths;
 use crate::layers::timeline::Wrap;
 use crate::layers::{KINDS, space};
@@ -51,26 +50,36 @@ pub fn overlay(scene: &Scene, synth: Option<&Synth>, view: &View) -> Vec<Mark> {
     let t = view.times.first().copied().unwrap_or(0.0);
     let synth = synth.map(|synth| (synth, synth.moment(t)));
     let nearest = synth.as_ref().map(|(synth, moment)| nearest(synth, moment, &view)).unwrap_or_default();
-    let ready = synth.iter().flat_map(|(synth, moment)| {
-        let marks = |(i, layer): (usize, &Arc<dyn Ready>)| {
-            let selected = view.selection.as_deref().and_then(|path| Pointer(path).below(&format!("/layers/{i}")));
-            let selection = selected.map(str::to_owned);
-            let view = View { nearest: nearest.get(&i).cloned(), selection, ..view.clone() };
-            layer.marks(&view, moment).into_iter().map(move |mark| (i, mark))
-        };
-        synth.layers.iter().enumerate().flat_map(marks).collect::<Vec<_>>()
-    });
-    let layers = scene.layers.iter().enumerate();
-    let layers = layers.flat_map(|(i, layer)| layer.technique().marks(&view).into_iter().map(move |mark| (i, mark)));
-    let of_layers = ready.chain(layers).map(|(i, mark)| (format!("/layers/{i}{}", mark.path), mark));
-    let world = synth.iter().filter(|(synth, _)| synth.stage.seen_by().is_some());
-    // The topmost of what is in space.
-    let over_ground = View { nearest: nearest.values().next_back().cloned(), ..view.clone() };
-    let world = world.flat_map(|(_, moment)| space::marks::marks(&over_ground, moment, scene.camera.as_ref()));
-    let all = of_layers.chain(world.map(|mark| (mark.path.clone(), mark)));
-    let mut marks: Vec<Mark> = all.map(|(path, mark)| collected(path, mark, &view)).collect();
+    let mut marks = Vec::new();
+    if let Some((synth, moment)) = &synth {
+        for (i, layer) in synth.layers.iter().enumerate() {
+            let selection = selected_in(i, &view).map(str::to_owned);
+            let own = View { nearest: nearest.get(&i).cloned(), selection, ..view.clone() };
+            marks.extend(of_layer(i, layer.marks(&own, moment), &view));
+        }
+    }
+    for (i, layer) in scene.layers.iter().enumerate() {
+        marks.extend(of_layer(i, layer.technique().marks(&view), &view));
+    }
+    for (_, moment) in synth.iter().filter(|(synth, _)| synth.stage.seen_by().is_some()) {
+        // The topmost of what is in space.
+        let over_ground = View { nearest: nearest.values().next_back().cloned(), ..view.clone() };
+        let world = space::marks::marks(&over_ground, moment, scene.camera.as_ref());
+        marks.extend(world.into_iter().map(|mark| selected_by(view.selection.as_deref(), mark)));
+    }
     marks.sort_by_key(|mark| mark.look.order);
     marks
+}
+
+/// The marks that a layer made, as marks of the document.
+fn of_layer(layer: usize, marks: Vec<Mark>, view: &View) -> impl Iterator<Item = Mark> {
+    let selection = selected_in(layer, view);
+    marks.into_iter().map(move |mark| selected_by(selection, Mark { layer: Some(layer), ..mark }))
+}
+
+/// What is selected of a layer, as a JSON pointer in it.
+fn selected_in(layer: usize, view: &View) -> Option<&str> {
+    Pointer(view.selection.as_deref()?).below(&format!("/layers/{layer}"))
 }
 
 /// The marks of what is at a JSON pointer if it went to where a place of the picture points, at scene time `t`.
@@ -100,11 +109,6 @@ fn nearest(synth: &Synth, moment: &Moment, view: &View) -> BTreeMap<usize, Arc<D
     synth.stage.groups.iter().flat_map(of_group).collect()
 }
 
-fn collected(path: String, mark: Mark, view: &View) -> Mark {
-    let selected = view.selection.as_deref().is_some_and(|selection| is_selected(&path, selection));
-    Mark { path, selected, ..mark }
-}
-
 /// What is drawn as the longest arrow and in the fullest color: what the look says, else the most that the scene has.
 pub fn reach(synth: &Synth, look: &VectorLook) -> Reach {
     let fields = || synth.layers.iter().flat_map(|layer| layer.fields());
@@ -132,14 +136,17 @@ pub fn pick(scene: &Scene, at: Point, reach_px: f64) -> Option<Hit> {
     hits.min_by(|a, b| a.distance_px.total_cmp(&b.distance_px))
 }
 
+/// A mark, with whether it is selected.
+fn selected_by(selection: Option<&str>, mark: Mark) -> Mark {
+    Mark { selected: selection.is_some_and(|selection| is_selected(&mark.path, selection)), ..mark }
+}
+
 /// A mark is selected if the selection is in it, or if it is in the selection and that is an item of the layer or
-/// something smaller.
+/// something smaller. What belongs to nothing in the document, as the ground, or to all of a layer, as its edges, never is.
 fn is_selected(mark: &str, selection: &str) -> bool {
-    // `/layers/0/zones/2` and deeper.
-    let is_item = Pointer(selection).depth() >= 4;
-    // What belongs to nothing in the document, as the ground, or to all of a layer, as its edges, is never selected.
-    let is_part = !matches!(Pointer(mark).depth(), 0 | 2);
-    is_part && (Pointer(selection).is_within(mark) || (is_item && Pointer(mark).is_within(selection)))
+    // `/zones/2` and deeper.
+    let takes_all = || Pointer(mark).is_within(selection) && Pointer(selection).depth() >= 2;
+    !mark.is_empty() && (Pointer(selection).is_within(mark) || takes_all())
 }
 
 #[cfg(test)]
@@ -150,14 +157,12 @@ mod tests {
     #[test]
     fn selection_reaches_up_to_the_zone_and_down() {
         for (mark, selection, selected) in [
-            ("/layers/0/zones/2", "/layers/0/zones/2/interpolation/radius", true),
-            ("/layers/0/zones/2/motion/1", "/layers/0/zones/2", true),
-            ("/layers/0/zones/2/motion/1", "/layers/0/zones/2/motion/10", false),
-            ("/layers/0/zones/2", "/layers/0/zones", false),
-            ("/layers/0/zones/2", "/layers/0", false),
-            ("/layers/0/zones/2", "", false),
-            ("", "/layers/0/kind", false),
-            ("/layers/0", "/layers/0/pose", false),
+            ("/zones/2", "/zones/2/interpolation/radius", true),
+            ("/zones/2/motion/1", "/zones/2", true),
+            ("/zones/2/motion/1", "/zones/2/motion/10", false),
+            ("/zones/2", "/zones", false),
+            ("/zones/2", "", false),
+            ("", "/kind", false),
             ("/camera", "/camera/fov", true),
         ] {
             assert_eq!(is_selected(mark, selection), selected, "{mark} {selection}");

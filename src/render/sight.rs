@@ -45,7 +45,7 @@ impl Sight {
             Sight::From(camera) => Some(Visible { synth: synth.seen_from((**camera).clone()), marks: None }),
             Sight::Painting { layer, picture, share } => {
                 let found = synth.layers.get(*layer)?.painted(*picture, *share)?;
-                let told = |mark: Mark| Mark { path: format!("/layers/{layer}{}", mark.path), ..mark };
+                let told = |mark: Mark| Mark { layer: Some(*layer), ..mark };
                 let marks = found.marks.into_iter().map(told).collect();
                 Some(Visible { synth: alone(found.picture)?, marks: Some(marks) })
             }

@@ -1,5 +1,7 @@
 //! The marks for the document of a layer: outlines, fold regions, anchors, curves.
 
+use std::sync::Arc;
+
 use kurbo::{Point, Vec2};
 
 use super::looks::{ANCHOR, ANCHORS, CURVE, CURVES, FOLD_REGION, HANDLE, JUMP, LABELS, LASSO, OUTLINES, REGIONS};
@@ -15,7 +17,7 @@ use crate::layers::shapes::node::{Node, bezier};
 pub fn marks(layer: &PictureLayer, view: &View) -> Vec<Mark> {
     let mut drawing = Drawing::new(view);
     for (z, zone) in layer.zones.iter().enumerate() {
-        drawing.zone(zone, &zone_path(z));
+        drawing.zone(zone, &zone_path(z).into());
     }
     drawing.marks
 }
@@ -40,21 +42,21 @@ impl<'a> Drawing<'a> {
     }
 
     /// Adds a mark of what is at `path`, relative to the layer.
-    pub fn add(&mut self, look: &'static Look, path: &str, shape: Shape) {
-        self.marks.push(Mark::new(look, path, shape));
+    pub fn add(&mut self, look: &'static Look, path: &Arc<str>, shape: Shape) {
+        self.marks.push(Mark::new(look, path.clone(), shape));
     }
 
-    fn zone(&mut self, zone: &Zone, at: &str) {
+    fn zone(&mut self, zone: &Zone, at: &Arc<str>) {
         self.outlines(zone, at);
         if self.view.shows(ANCHORS) {
             self.anchors(zone, at);
         }
         for (t, tool) in zone.motion.iter().enumerate().filter(|_| self.view.shows(CURVES)) {
-            self.tool(tool, &format!("{at}/motion/{t}"));
+            self.tool(tool, &format!("{at}/motion/{t}").into());
         }
     }
 
-    fn outlines(&mut self, zone: &Zone, at: &str) {
+    fn outlines(&mut self, zone: &Zone, at: &Arc<str>) {
         if self.view.shows(OUTLINES) {
             let points = zone.outline.polygon().vertices().to_vec();
             if let (true, Some(&first)) = (self.view.shows(LABELS), points.first()) {
@@ -64,21 +66,21 @@ impl<'a> Drawing<'a> {
         }
         let regions = zone.fold.as_ref().map_or(&[][..], |fold| fold.regions());
         for (r, region) in regions.iter().enumerate().filter(|_| self.view.shows(REGIONS)) {
-            let at = format!("{at}/fold/regions/{r}");
+            let at = format!("{at}/fold/regions/{r}").into();
             let points = region.polygon().vertices().to_vec();
             self.add(&FOLD_REGION, &at, Shape::Fill(points.clone()));
             self.add(&FOLD_REGION, &at, Shape::Line { points, closed: true });
         }
     }
 
-    fn anchors(&mut self, zone: &Zone, at: &str) {
+    fn anchors(&mut self, zone: &Zone, at: &Arc<str>) {
         let labels = self.view.shows(LABELS);
         let mut numbered = None;
         for anchor in zone.anchors() {
             // The first anchor of each tool is labelled with its number.
             let number =
                 if numbered.replace(anchor.tool) == Some(anchor.tool) { "" } else { &format!("{}: ", anchor.tool) };
-            let at = format!("{at}/motion/{}", anchor.tool);
+            let at = format!("{at}/motion/{}", anchor.tool).into();
             if anchor.jump == Vec2::ZERO {
                 if labels && !number.is_empty() {
                     self.add(&STILL, &at, Shape::Label(anchor.at, format!("{number}still")));
@@ -95,7 +97,7 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    fn tool(&mut self, tool: &Tool, at: &str) {
+    fn tool(&mut self, tool: &Tool, at: &Arc<str>) {
         let facts = tool.facts();
         if let Some(nodes) = facts.path {
             let points = flattened(nodes);
@@ -110,7 +112,7 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    fn handles(&mut self, node: &Node, at: &str) {
+    fn handles(&mut self, node: &Node, at: &Arc<str>) {
         let here = point(node.at);
         self.add(&CURVE, at, Shape::Dot(here));
         for handle in [node.handle_in, node.handle_out].map(vector) {

@@ -1,6 +1,8 @@
 //! The marks for single pixels of zones, at a regular spacing: jump vectors as arrows, streamlines and colors, jump paths,
 //! where they meet fold regions, and the samplers that move along them.
 
+use std::sync::Arc;
+
 use kurbo::{Point, Vec2};
 
 use super::field::Field;
@@ -15,7 +17,7 @@ use crate::layers::parts::vectors::Coloring;
 /// The marks of a layer that need its synthesis.
 pub fn marks(synth: &Synth, view: &View) -> Vec<Mark> {
     let mut drawing = Drawing::new(view);
-    synth.zones.iter().for_each(|zone| drawing.pixels(zone, &zone_path(zone.index)));
+    synth.zones.iter().for_each(|zone| drawing.pixels(zone, &zone_path(zone.index).into()));
     drawing.marks
 }
 
@@ -69,7 +71,7 @@ fn lattice(field: &Field, spacing: f64) -> impl Iterator<Item = Pixel> + '_ {
 }
 
 impl Drawing<'_> {
-    fn pixels(&mut self, zone: &ZoneSynth, at: &str) {
+    fn pixels(&mut self, zone: &ZoneSynth, at: &Arc<str>) {
         let view = self.view;
         if view.shows(WHEEL) {
             self.cells(&zone.field, at);
@@ -93,17 +95,17 @@ impl Drawing<'_> {
         }
     }
 
-    fn cells(&mut self, field: &Field, at: &str) {
+    fn cells(&mut self, field: &Field, at: &Arc<str>) {
         let View { vectors, reach, .. } = self.view;
         let side = self.view.cell_px.max(1.0);
         for pixel in lattice(field, self.view.cell_px) {
             let tint = Some(vectors.color(pixel.jump, || field.slopes(pixel.at), *reach));
-            let mark = Mark::new(&VECTOR_COLORS, at, Shape::Cell(pixel.at, side));
+            let mark = Mark::new(&VECTOR_COLORS, at.clone(), Shape::Cell(pixel.at, side));
             self.marks.push(Mark { tint, strength: vectors.opacity as f32, ..mark });
         }
     }
 
-    fn arrows(&mut self, field: &Field, at: &str) {
+    fn arrows(&mut self, field: &Field, at: &Arc<str>) {
         for pixel in lattice(field, self.view.spacing_px) {
             let shape = Shape::Arrow(pixel.at, pixel.at + self.view.arrow(pixel.jump));
             self.stroke(field, pixel.at, at, shape);
@@ -112,7 +114,7 @@ impl Drawing<'_> {
 
     /// Streamlines, with an arrow's head in the middle of each. One whose color tells something is drawn in pieces, each of
     /// the color of its middle.
-    fn streamlines(&mut self, field: &Field, at: &str) {
+    fn streamlines(&mut self, field: &Field, at: &Arc<str>) {
         let spacing = self.view.spacing_px;
         let seeds = lattice(field, spacing).map(|pixel| pixel.at);
         for line in streamlines(field, seeds, spacing) {
@@ -127,15 +129,15 @@ impl Drawing<'_> {
     }
 
     /// Adds an arrow or a line of the field, in the color of the vector at a place. Over colors it would not be seen in its own.
-    fn stroke(&mut self, field: &Field, of: Point, at: &str, shape: Shape) {
+    fn stroke(&mut self, field: &Field, of: Point, at: &Arc<str>, shape: Shape) {
         let View { vectors, reach, .. } = self.view;
         let tint = vectors.stroke_color(field.jump(of), || field.slopes(of), *reach);
         let tint = tint.filter(|_| !self.view.shows(WHEEL));
-        self.marks.push(Mark { tint, strength: vectors.opacity as f32, ..Mark::new(&VECTORS, at, shape) });
+        self.marks.push(Mark { tint, strength: vectors.opacity as f32, ..Mark::new(&VECTORS, at.clone(), shape) });
     }
 
     /// The jump paths: from s = 0 to 1, and as far as the position function goes beyond.
-    fn paths(&mut self, zone: &ZoneSynth, at: &str) {
+    fn paths(&mut self, zone: &ZoneSynth, at: &Arc<str>) {
         let (low, high) = zone.clock.position.range();
         let pixels = lattice(&zone.field, self.view.spacing_px);
         for Pixel { at: q, jump, .. } in pixels.filter(|pixel| pixel.jump != Vec2::ZERO) {
@@ -144,7 +146,7 @@ impl Drawing<'_> {
         }
     }
 
-    fn thresholds(&mut self, field: &Field, at: &str) {
+    fn thresholds(&mut self, field: &Field, at: &Arc<str>) {
         let Some(folds) = &field.folds else { return };
         for pixel in lattice(field, self.view.spacing_px) {
             for s in folds.behind.of(pixel.index).iter().chain(folds.ahead.of(pixel.index)) {
@@ -154,7 +156,7 @@ impl Drawing<'_> {
     }
 
     /// The samplers at their effective places; the earlier ones first, so that they are below.
-    fn samplers(&mut self, zone: &ZoneSynth, times: &[f64], at: &str) {
+    fn samplers(&mut self, zone: &ZoneSynth, times: &[f64], at: &Arc<str>) {
         let fading = times.len() as f32;
         for (age, &time) in times.iter().enumerate().rev() {
             let s = zone.clock.s(time);
@@ -164,7 +166,7 @@ impl Drawing<'_> {
                 if age == 0 || effective.is_some() {
                     let shape = Shape::Dot(pixel.at + pixel.jump * effective.unwrap_or(0.0));
                     let strength = 1.0 - age as f32 / fading;
-                    self.marks.push(Mark { strength, ..Mark::new(look, at, shape) });
+                    self.marks.push(Mark { strength, ..Mark::new(look, at.clone(), shape) });
                 }
             }
         }

@@ -163,8 +163,10 @@ pub struct Mark {
     pub look: &'static Look,
     /// Its shape, in pixels of the picture.
     pub shape: Shape,
-    /// JSON pointer of what it shows: relative to the layer when a technique makes it, to the document once collected.
-    pub path: String,
+    /// JSON pointer of what it shows, in its layer; of what belongs to none, in the document.
+    pub path: Arc<str>,
+    /// Which layer made it; set when collected.
+    pub layer: Option<usize>,
     /// Whether it belongs to what is selected; set when collected.
     pub selected: bool,
     /// Opacity, multiplied by that of its color, 0 to 1.
@@ -175,8 +177,13 @@ pub struct Mark {
 
 impl Mark {
     /// A mark for what is at `path`, not selected, of full strength.
-    pub fn new(look: &'static Look, path: impl Into<String>, shape: Shape) -> Mark {
-        Mark { look, shape, path: path.into(), selected: false, strength: 1.0, tint: None }
+    pub fn new(look: &'static Look, path: impl Into<Arc<str>>, shape: Shape) -> Mark {
+        Mark { look, shape, path: path.into(), layer: None, selected: false, strength: 1.0, tint: None }
+    }
+
+    /// JSON pointer of what it shows, in the document.
+    pub fn pointer(&self) -> String {
+        self.layer.map_or_else(|| self.path.to_string(), |layer| format!("/layers/{layer}{}", self.path))
     }
 
     /// Its color: sRGB with straight alpha.

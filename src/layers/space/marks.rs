@@ -216,7 +216,7 @@ mod tests {
         let seen = Moment { eye: Some(own.at(0.0, (200, 100))), ..moment() };
         assert_eq!(marks(&view, &seen, Some(&own)), []);
         let marks = marks(&view, &moment(), Some(&own));
-        assert!(marks.len() > 4 && marks.iter().all(|mark| mark.path == "/camera"), "{marks:?}");
+        assert!(marks.len() > 4 && marks.iter().all(|mark| &*mark.path == "/camera"), "{marks:?}");
     }
 
     #[test]

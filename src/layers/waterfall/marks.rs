@@ -156,8 +156,8 @@ mod tests {
         // The nearest, and a tick at each tenth of the 0.69 s that they last.
         assert_eq!(lines, NEXT_TO);
         assert_eq!(ticks, 6 * lines);
-        assert!(next.iter().all(|mark| mark.path == "/lip"));
-        let grips: Vec<&str> = found.iter().filter(|mark| mark.look.is_grip).map(|mark| mark.path.as_str()).collect();
+        assert!(next.iter().all(|mark| &*mark.path == "/lip"));
+        let grips: Vec<&str> = found.iter().filter(|mark| mark.look.is_grip).map(|mark| &*mark.path).collect();
         assert_eq!(grips, ["/lip/0", "/lip/1", "/lip/2"]);
         assert_eq!(marks(&synth, &View::default(), &moment), []);
     }

@@ -152,7 +152,7 @@ mod tests {
             Shape::Line { points, closed: true } => Some(points[0]),
             _ => None,
         };
-        found.marks.iter().filter_map(|mark| Some((mark.path.as_str(), corner(mark)?, mark.strength))).collect()
+        found.marks.iter().filter_map(|mark| Some((&*mark.path, corner(mark)?, mark.strength))).collect()
     }
 
     #[test]

@@ -181,7 +181,7 @@ impl Cached {
 /// What a mark lets the mouse drag, and where that is.
 fn grip(mark: &Mark) -> Option<Grip> {
     let Shape::Dot(at) = mark.shape else { return None };
-    mark.look.is_grip.then(|| Grip { pointer: mark.path.clone(), at, from: None })
+    mark.look.is_grip.then(|| Grip { pointer: mark.pointer(), at, from: None })
 }
 
 #[cfg(test)]

@@ -34,8 +34,8 @@ impl ClipView {
     pub fn seen(&self, synth: &Synth) -> Option<(Synth, Vec<Mark>, f64)> {
         let found = synth.layers.get(self.layer)?.picking(self.sight)?;
         let told = |mark: Mark| {
-            let path = format!("/layers/{}{}", self.layer, mark.path);
-            Mark { selected: path == self.selection, path, ..mark }
+            let mark = Mark { layer: Some(self.layer), ..mark };
+            Mark { selected: mark.pointer() == self.selection, ..mark }
         };
         Some((alone(found.picture)?, found.marks.into_iter().map(told).collect(), found.side))
     }

@@ -147,9 +147,9 @@ fn windows_and_the_square_at_the_cursor_lie_over_the_frame() {
     let shown = TerminalPicture::new(&synth, &request.scene, 0.0, wanted, None);
     let [bright, dark] = [(24.0, 17.0), (5.0, 40.0)].map(|place| shown.color_at(place.into()).unwrap()[0]);
     assert!(bright > 150 && dark < 60, "{bright} {dark}");
-    let paths: Vec<(&str, bool)> = shown.over.iter().map(|mark| (mark.path.as_str(), mark.selected)).collect();
-    assert!(paths.contains(&("/layers/0/sprites/picks/0", true)), "{paths:?}");
-    assert!(paths.contains(&("/layers/0/sprites/picks/2", false)), "{paths:?}");
+    let paths: Vec<(String, bool)> = shown.over.iter().map(|mark| (mark.pointer(), mark.selected)).collect();
+    assert!(paths.contains(&("/layers/0/sprites/picks/0".into(), true)), "{paths:?}");
+    assert!(paths.contains(&("/layers/0/sprites/picks/2".into(), false)), "{paths:?}");
     assert_eq!(panes::picture::title(&state).split("  ").next(), Some("clip 1 of 8"));
     read(&mut state);
     assert!(state.picture.looking.is_some(), "a new synthesis changes nothing");

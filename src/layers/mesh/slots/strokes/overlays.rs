@@ -184,7 +184,7 @@ mod tests {
         let marks = dots(&[impulse(10.0, 20.0, 0.5, 0.0), impulse(30.0, 20.0, 0.0, 0.0)], "/strokes/noises/a");
         let [circle, _, dot, faint] = &marks[..] else { panic!("{marks:?}") };
         assert_eq!((dot.shape.clone(), dot.strength), (Shape::Dot(Point::new(10.0, 20.0)), 0.5));
-        assert_eq!((faint.strength, faint.path.as_str()), (0.15, "/strokes/noises/a"));
+        assert_eq!((faint.strength, &*faint.path), (0.15, "/strokes/noises/a"));
         let Shape::Line { points, closed: true } = &circle.shape else { panic!("{circle:?}") };
         assert!(points.iter().all(|corner| (corner.distance(Point::new(10.0, 20.0)) - 6.0).abs() < 1e-9));
     }

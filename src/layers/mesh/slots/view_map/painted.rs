@@ -89,6 +89,6 @@ mod tests {
         let expected =
             [[[1.0, 1.0], [3.0, 1.0]], [[1.0, 2.0], [3.0, 2.0]], [[1.0, 1.0], [1.0, 2.0]], [[3.0, 1.0], [3.0, 2.0]]];
         assert_eq!(lines, expected.map(|line| line.to_vec()));
-        assert!(found.marks.iter().all(|mark| mark.path == "/surface/views/3"));
+        assert!(found.marks.iter().all(|mark| &*mark.path == "/surface/views/3"));
     }
 }
