@@ -183,3 +183,37 @@ fn a_probe_is_of_what_is_seen() {
     let plain = String::from_utf8_lossy(&plain).into_owned();
     assert!(plain.find("near") < plain.find(why) && plain.contains(&format!("{why}\n")), "{plain}");
 }
+
+#[test]
+fn a_probe_goes_on_in_the_layer_that_a_surface_shows() {
+    let folder = folder();
+    let color = |x: u32| image::Rgba(if x < 2 { [255, 0, 0, 255] } else { [0, 255, 0, 255] });
+    image::RgbaImage::from_fn(4, 4, |x, _| color(x)).save(folder.path().join("eye.png")).unwrap();
+    let mut scene: serde_json::Value = serde_json::from_str(SCENE).unwrap();
+    scene["images"] = serde_json::json!({ "eye": { "path": "eye.png" } });
+    scene["layers"] = serde_json::json!([
+        { "kind": "picture", "name": "eye", "image": "eye", "zones": [{ "name": "lid",
+          "outline": { "kind": "rectangle", "x": 2, "y": 0, "width": 2, "height": 4 },
+          "motion": [{ "tool": "translate", "by": [1, 0] }] }] },
+        { "kind": "mesh", "name": "near", "mesh": "square", "light": { "ambient": 1 },
+          "surface": { "kind": "layer", "layer": "eye" } },
+    ]);
+    fs::write(folder.path().join("s.plica.json"), scene.to_string()).unwrap();
+    let probed = |line: &str| {
+        let Output { status, stdout, stderr } = run(folder.path(), &format!("probe s.plica.json {line}"));
+        assert!(status.success(), "{line}: {}", String::from_utf8_lossy(&stderr));
+        String::from_utf8_lossy(&stdout).into_owned()
+    };
+    let json = |line: &str| serde_json::from_str::<serde_json::Value>(&probed(&format!("--json {line}"))).unwrap();
+    // The square covers columns 8 to 40 of the frame.
+    let seen = json("--at 36.5,4.5");
+    let texel = serde_json::json!({ "layer": "eye", "pixel": [3, 0] });
+    assert_eq!(
+        (&seen["layer"], &seen["others"][0], &seen["others"][1]["zone"]),
+        (&"near".into(), &texel, &"lid".into())
+    );
+    assert!(probed("--at 36.5,4.5").contains("\nalso: layer \"eye\"\n  pixel 3 0\nalso: zone \"lid\"\n  jump 1.000"));
+    // Asked for by itself it is the layer's own pixel.
+    let own = json("--at 1,0 --layer eye");
+    assert_eq!((&own["zone"], &own["color"]), (&serde_json::Value::Null, &serde_json::json!([255, 0, 0, 255])));
+}

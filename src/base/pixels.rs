@@ -111,6 +111,12 @@ pub fn bilinear(
     mean_of_four((x, y), texel)
 }
 
+/// The place of texture coordinates in a picture of this width and height that repeats, in pixels: v = 0 is its bottom edge.
+#[inline]
+pub fn texture_place([u, v]: [f64; 2], (width, height): (usize, usize)) -> (f64, f64) {
+    ((u - u.floor()) * width as f64, (1.0 - (v - v.floor())) * height as f64)
+}
+
 /// As [`bilinear`], of a picture that repeats in both directions.
 #[inline]
 pub fn bilinear_repeated((width, height): (usize, usize), (x, y): (f64, f64), texel: impl Fn(usize) -> Rgba) -> Rgba {

@@ -7,10 +7,13 @@ use serde_json::{Value as Json, json};
 use super::{Context, opened::Opened, scene_options::SceneOptions};
 use crate::base::error::{Error, Result};
 use crate::base::maths;
+use crate::base::pixels::{encode, texture_place};
 use crate::base::text::{self, hex};
+use crate::layers::Layer;
 use crate::layers::parts::materials::Materials;
+use crate::layers::parts::moment::{Columns, Moment};
 use crate::layers::parts::readout::{Entry, ReadOut, Value};
-use crate::render::{self, bands::Bands, passes, stage::Stage};
+use crate::render::{self, Synth, bands::Bands, passes, stage::Stage};
 use crate::scene::Scene;
 
 /// Show what a pixel does at a time, and why
@@ -49,11 +52,12 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let size = own.unwrap_or_else(|| render::frame_size(scene, &opened.materials));
     let moment = Stage::of(scene).moment(args.time, size);
     let making = render::making(scene, &opened.materials);
-    let look = |index: usize, pixel| {
+    let look = |index: usize, pixel, moment: &Moment| {
         let ready = synth.as_ref().and_then(|synth| synth.layers.get(index)).map(|ready| &**ready);
-        let read = scene.layers[index].technique().probe(&making, ready, pixel, &moment);
+        let read = scene.layers[index].technique().probe(&making, ready, pixel, moment);
         read.map_err(|problem| Error::at(args.scene.display(), problem))
     };
+    let textures = scene.textures();
     let mut outside = None;
     for at in &args.at {
         let pixel = match pixel_at(*at, size) {
@@ -72,14 +76,21 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
         };
         let seen = all.and_then(|synth| passes::topmost(synth, args.time, pixel));
         let layer = seen.unwrap_or(asked);
-        let mut read = vec![look(layer, pixel)?.unwrap_or_default()];
+        let mut read = vec![look(layer, pixel, &moment)?.unwrap_or_default()];
+        if let Some(Texel { layer, pixel, size_px }) = texel(scene, layer, &read[0], &opened.materials) {
+            read.push(told(&scene.layers[layer], pixel));
+            read.extend(look(layer, pixel, &Moment { size_px, ..moment })?);
+        }
         if args.layer.is_none() {
-            let others = others(scene, layer, pixel, &opened.materials).map(|i| look(i, pixel));
+            let others = others(scene, layer, pixel, &opened.materials).map(|i| look(i, pixel, &moment));
             let others = others.collect::<Result<Vec<_>>>()?;
             read.extend(others.into_iter().flatten().filter(ReadOut::is_of_something));
         }
         // A layer larger than the first reaches beyond the frame, which shows nothing there.
-        let color = shown.pixel(args.time, pixel).map_err(|problem| opened.failed(problem))?;
+        let alone =
+            synth.as_ref().filter(|_| textures.contains(&layer)).map(|synth| alone(synth, layer, pixel, &moment));
+        let color =
+            alone.map_or_else(|| shown.pixel(args.time, pixel), Ok).map_err(|problem| opened.failed(problem))?;
         let answer = if args.json { line(&read, color) } else { prose(&read, color, pixel, args.time) };
         context.print(answer)?;
     }
@@ -106,6 +117,35 @@ fn others<'a>(
     let textures = scene.textures();
     let reaches = move |i: &usize| own_size(scene, *i, materials).is_none_or(|(width, height)| x < width && y < height);
     (0..scene.layers.len()).rev().filter(move |i| *i != layer && !textures.contains(i)).filter(reaches)
+}
+
+/// A pixel of a layer that another shows as a texture.
+struct Texel {
+    layer: usize,
+    pixel: (usize, usize),
+    size_px: (usize, usize),
+}
+
+/// What a layer shows of another one where `read` was read.
+fn texel(scene: &Scene, layer: usize, read: &ReadOut, materials: &Materials) -> Option<Texel> {
+    let (layer, _) = scene.shown_by(layer).into_iter().next()?;
+    let size_px = own_size(scene, layer, materials)?;
+    let (x, y) = texture_place(read.uv?, size_px);
+    Some(Texel { layer, pixel: (x as usize % size_px.0, y as usize % size_px.1), size_px })
+}
+
+/// Which pixel of which layer is read next.
+fn told(layer: &Layer, (x, y): (usize, usize)) -> ReadOut {
+    let name = Entry { key: "layer", label: "layer", value: Value::Of(Some(layer.technique().name().to_owned())) };
+    let pixel = Entry { key: "pixel", label: "pixel", value: Value::Indices(vec![x, y]) };
+    ReadOut { entries: vec![name, pixel], ..ReadOut::default() }
+}
+
+/// What a layer by itself shows in one of its pixels.
+fn alone(synth: &Synth, layer: usize, (x, y): (usize, usize), moment: &Moment) -> [u8; 4] {
+    let mut row = vec![[0.0; 4]; moment.size_px.0];
+    synth.layers[layer].at(moment).row(y, Columns::All, &mut row);
+    encode(row[x])
 }
 
 /// Width and height of the picture that gives a layer its size, if there is one.
@@ -318,11 +358,12 @@ mod tests {
                 entry("active", "active", Value::Flag { on, off: "still" }),
                 entry("read", "reads", Value::Place((1.5, 2.0).into())),
             ];
-            vec![ReadOut { entries, axis: None }]
+            vec![ReadOut { entries, ..ReadOut::default() }]
         };
-        let water = ReadOut { entries: vec![entry("layer", "layer", Value::Of(Some("falls".into())))], axis: None };
-        let sprites = vec![ReadOut { entries: sprites(), axis: None }];
-        let outside = vec![ReadOut { entries: vec![entry("zone", "zone", Value::Of(None))], axis: None }];
+        let water =
+            ReadOut { entries: vec![entry("layer", "layer", Value::Of(Some("falls".into())))], ..ReadOut::default() };
+        let sprites = vec![ReadOut { entries: sprites(), ..ReadOut::default() }];
+        let outside = vec![ReadOut { entries: vec![entry("zone", "zone", Value::Of(None))], ..ReadOut::default() }];
         for (read, json, words) in [
             (
                 read(true),

@@ -1,7 +1,7 @@
 //! What is drawn over a picture to explain it: the marks of all layers, from bottom to top. A pure function from scene,
 //! synthesis and view to marks in pixels of the picture.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use glam::DVec2;
@@ -50,15 +50,16 @@ pub fn overlay(scene: &Scene, synth: Option<&Synth>, view: &View) -> Vec<Mark> {
     let t = view.times.first().copied().unwrap_or(0.0);
     let synth = synth.map(|synth| (synth, synth.moment(t)));
     let nearest = synth.as_ref().map(|(synth, moment)| nearest(synth, moment, &view)).unwrap_or_default();
+    let textures = if view.of_textures { BTreeSet::new() } else { scene.textures() };
     let mut marks = Vec::new();
     if let Some((synth, moment)) = &synth {
-        for (i, layer) in synth.layers.iter().enumerate() {
+        for (i, layer) in synth.layers.iter().enumerate().filter(|(i, _)| !textures.contains(i)) {
             let selection = selected_in(i, &view).map(str::to_owned);
             let own = View { nearest: nearest.get(&i).cloned(), selection, ..view.clone() };
             marks.extend(of_layer(i, layer.marks(&own, moment), &view));
         }
     }
-    for (i, layer) in scene.layers.iter().enumerate() {
+    for (i, layer) in scene.layers.iter().enumerate().filter(|(i, _)| !textures.contains(i)) {
         marks.extend(of_layer(i, layer.technique().marks(&view), &view));
     }
     for (_, moment) in synth.iter().filter(|(synth, _)| synth.stage.seen_by().is_some()) {
@@ -128,7 +129,8 @@ pub fn jump_at(synth: &Synth, at: Point) -> Option<Vec2> {
 /// What is at a place, in pixels of the picture: the nearest thing within `reach_px`, otherwise the topmost area that
 /// contains it; its path is a pointer into the document.
 pub fn pick(scene: &Scene, at: Point, reach_px: f64) -> Option<Hit> {
-    let layers = scene.layers.iter().enumerate().rev();
+    let textures = scene.textures();
+    let layers = scene.layers.iter().enumerate().rev().filter(|(i, _)| !textures.contains(i));
     let hits = layers.filter_map(|(i, layer)| {
         let hit = layer.technique().pick(at, reach_px)?;
         Some(Hit { path: format!("/layers/{i}{}", hit.path), ..hit })
@@ -177,6 +179,22 @@ mod tests {
             let marks = overlay(&scene, Some(&synth), &View { cell_px: 4.0, ..View::of(shown) });
             assert_eq!(marks.iter().filter(|mark| mark.look.name == "edge").count(), edges, "{shown:?}");
         }
+    }
+
+    #[test]
+    fn a_layer_that_lies_on_another_has_no_marks_in_the_frame() {
+        let scene: Scene = serde_json::from_str(
+            r#"{ "plica": 1, "images": {"a": {"path": "a.png"}}, "meshes": {"m": {"path": "m.obj"}}, "camera": {}, "layers": [
+              {"kind": "picture", "name": "eye", "image": "a", "zones": [
+                {"name": "lid", "outline": {"kind": "rectangle", "x": 0, "y": 0, "width": 4, "height": 4}}]},
+              {"kind": "mesh", "name": "ball", "mesh": "m", "surface": {"kind": "layer", "layer": "eye"}} ]}"#,
+        )
+        .unwrap();
+        for (of_textures, count) in [(false, 0), (true, 1)] {
+            let view = View { of_textures, ..View::of(&["view-outlines"]) };
+            assert_eq!(overlay(&scene, None, &view).len(), count, "{of_textures}");
+        }
+        assert_eq!(pick(&scene, Point::new(2.0, 2.0), 1.0), None);
     }
 
     #[test]

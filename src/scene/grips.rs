@@ -47,9 +47,12 @@ enum Of {
     Size(Point),
 }
 
-/// All that can be dragged of what `selection` is in: a zone, for one, or a shape.
+/// All that can be dragged of what `selection` is in: a zone, for one, or a shape. Nothing of a layer that is only seen on others: its
+/// places are not those of the frame.
 pub fn grips(document: &Document, selection: &str) -> Vec<Grip> {
+    let layer = Pointer(selection).item_of("/layers").map(|(layer, _)| layer);
     let item = match shape_of(selection) {
+        _ if layer.is_some_and(|layer| document.scene().textures().contains(&layer)) => None,
         Some(shape) => Some(shape),
         None => {
             layer_of(document, selection).filter(|(layer, _)| layer.mover().is_some()).and_then(|_| item_of(selection))

@@ -126,12 +126,20 @@ fn view(synth: &Synth, look: &PlotLook, spacing_px: f64) -> View {
     }
     let arrows = overlays_of_fields().map(|overlay| overlay.name).take(1);
     let shown = if look.overlays.is_empty() { arrows.collect() } else { look.overlays.iter().copied().collect() };
-    View { shown, spacing_px, cell_px: (spacing_px / CELLS).max(1.0), vectors, reach, ..View::default() }
+    View {
+        shown,
+        spacing_px,
+        cell_px: (spacing_px / CELLS).max(1.0),
+        vectors,
+        reach,
+        of_textures: true,
+        ..View::default()
+    }
 }
 
 fn shown_at(place: InPlots) -> View {
     let shown = overlays().filter(|overlay| overlay.in_plots == Some(place)).map(|overlay| overlay.name);
-    View { shown: shown.collect(), ..View::default() }
+    View { shown: shown.collect(), of_textures: true, ..View::default() }
 }
 
 /// The part of the picture that the plot shows: the zones and a little around them, in whole pixels.

@@ -29,7 +29,7 @@ impl Synth {
             entry("layer", "layer", Value::Of(Some(name.to_owned()))),
             entry("fill", "fill", Value::Color(encode(self.color(at)))),
         ];
-        ReadOut { entries: entries.into_iter().chain(along).collect(), axis: None }
+        ReadOut { entries: entries.into_iter().chain(along).collect(), ..ReadOut::default() }
     }
 
     /// How far along the line a place of the frame is, in pixels: 0 where it begins, 1 where it ends.

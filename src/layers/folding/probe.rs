@@ -71,7 +71,7 @@ pub fn probe(
 pub fn read_out(probe: Option<Probe>) -> ReadOut {
     let entry = |key, label, value| Entry { key, label, value };
     let Some(probe) = probe else {
-        return ReadOut { entries: vec![entry("zone", "zone", Value::Of(None))], axis: None };
+        return ReadOut { entries: vec![entry("zone", "zone", Value::Of(None))], ..ReadOut::default() };
     };
     let mut entries = vec![
         entry("zone", "zone", Value::Of(Some(probe.zone))),
@@ -85,7 +85,8 @@ pub fn read_out(probe: Option<Probe>) -> ReadOut {
     ];
     entries.extend(probe.frame.map(|frame| entry("frame", "frame", Value::Index(frame))));
     let points = vec![("s", probe.s), ("e", probe.e)];
-    ReadOut { entries, axis: Some(Axis { stretches: probe.active_parts, ticks: probe.thresholds, points }) }
+    let axis = Axis { stretches: probe.active_parts, ticks: probe.thresholds, points };
+    ReadOut { entries, axis: Some(axis), uv: None }
 }
 
 fn at(zone: &Zone, pixel: &Pixel, clock: &Clock, origin: Point, time: f64) -> Probe {

@@ -57,7 +57,7 @@ fn spot(view: &PosedMesh, (x, y): (usize, usize), moment: &Moment) -> Option<Spo
 fn read_out(layer: &MeshLayer, spot: Option<Spot>) -> ReadOut {
     let entry = |key, label, value| Entry { key, label, value };
     let Some(spot) = spot else {
-        return ReadOut { entries: vec![entry("layer", "surface", Value::Of(None))], axis: None };
+        return ReadOut { entries: vec![entry("layer", "surface", Value::Of(None))], ..ReadOut::default() };
     };
     let entries = vec![
         entry("layer", "layer", Value::Of(Some(layer.name.clone()))),
@@ -68,5 +68,5 @@ fn read_out(layer: &MeshLayer, spot: Option<Spot>) -> ReadOut {
         entry("depth", "depth", Value::Coordinates(vec![spot.hit.depth], "m")),
         entry("front", "front", Value::Flag { on: spot.hit.front, off: "back" }),
     ];
-    ReadOut { entries, axis: None }
+    ReadOut { entries, axis: None, uv: Some(spot.uv.to_array()) }
 }

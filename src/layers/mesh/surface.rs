@@ -239,9 +239,3 @@ pub struct SurfacePoint {
     /// The texture coordinates.
     pub uv: DVec2,
 }
-
-/// The place of texture coordinates in a picture of this width and height, in pixels: v = 0 is its bottom edge.
-pub fn place(uv: DVec2, (width, height): (usize, usize)) -> (f64, f64) {
-    let (u, v) = (uv.x - uv.x.floor(), uv.y - uv.y.floor());
-    (u * width as f64, (1.0 - v) * height as f64)
-}

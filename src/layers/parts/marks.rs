@@ -122,6 +122,8 @@ pub struct View {
     pub nearest: Option<Arc<Depths>>,
     /// JSON pointer of what is selected; relative to the layer for the marks of a layer that is ready.
     pub selection: Option<String>,
+    /// Whether layers that are only seen on others have marks too: in the frame their places mean nothing.
+    pub of_textures: bool,
 }
 
 impl View {

@@ -12,6 +12,8 @@ pub struct ReadOut {
     pub entries: Vec<Entry>,
     /// Where it is along its path.
     pub axis: Option<Axis>,
+    /// Where it is in the pictures that lie on a surface: u right and v up, from 0 to 1.
+    pub uv: Option<[f64; 2]>,
 }
 
 impl ReadOut {

@@ -40,7 +40,7 @@ pub fn probe(layer: &WaterfallLayer, synth: &Synth, pixel: (usize, usize), momen
         entry("listed", "", Value::Index(listed)),
         entry("sprites", "the most opaque first", Value::Items(items)),
     ];
-    ReadOut { entries, axis: None }
+    ReadOut { entries, ..ReadOut::default() }
 }
 
 /// What a sprite adds to a place: linear light, premultiplied.

@@ -9,6 +9,7 @@ use ratatui::style::{Color, Modifier, Style};
 
 use super::{arrow, write};
 use crate::base::number::rounded;
+use crate::base::pointer::Pointer;
 use crate::layers::parts::marks::{Dot, Legend, Mark, Shape};
 use crate::layers::parts::picking::Subject;
 use crate::render::overlay;
@@ -50,10 +51,18 @@ pub fn title(state: &State) -> String {
                 None => "select".into(),
             },
             (Some(_), _) => format!("results{pass}"),
-            (None, _) => format!("picture{pass}"),
+            (None, _) => format!("picture{pass}{}", lying(state)),
         },
     };
     format!("{what}  x {} y {}{scale}{fit}  {protocol}{}", short(at.x), short(at.y), reduced.unwrap_or_default())
+}
+
+/// What is said where the editor's cursor is in a layer that is only seen on others, which has no marks in the frame.
+fn lying(state: &State) -> String {
+    let scene = state.document().scene();
+    let layer = Pointer(&state.cursor.node).item_of("/layers").map(|(layer, _)| layer);
+    let lying = layer.filter(|layer| scene.textures().contains(layer)).and_then(|layer| scene.layers.get(layer));
+    lying.map(|layer| format!(", {} lies on another layer", plain(layer.technique().name()))).unwrap_or_default()
 }
 
 /// Draws the picture; the terminal's cursor is on the picture's cursor if the picture has the focus.

@@ -8,11 +8,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::base::mesh::Mesh;
-use crate::base::pixels::{Linear, Rgba, bilinear_repeated};
+use crate::base::pixels::{Linear, Rgba, bilinear_repeated, texture_place};
 use crate::base::problem::Problem;
 use crate::base::reduce::Reduced;
 use crate::layers::mesh::pose::Placed;
-use crate::layers::mesh::surface::{Before, Look, Reader, ReadySurface, StillSurface, SurfaceSlot, place};
+use crate::layers::mesh::surface::{Before, Look, Reader, ReadySurface, StillSurface, SurfaceSlot};
 use crate::layers::parts::materials::{List, Of, Use, What};
 use crate::layers::parts::moment::{Columns, Moment};
 use crate::layers::parts::plan::{Bind, DrawnTexture};
@@ -90,7 +90,7 @@ struct Still(Linear);
 impl Still {
     fn color(&self, uv: DVec2) -> Rgba {
         let size = (self.0.width(), self.0.height());
-        bilinear_repeated(size, place(uv, size), |i| self.0.cells()[i])
+        bilinear_repeated(size, texture_place(uv.to_array(), size), |i| self.0.cells()[i])
     }
 }
 

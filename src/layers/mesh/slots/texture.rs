@@ -8,11 +8,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::base::mesh::Mesh;
 use crate::base::picture::Picture;
-use crate::base::pixels::Rgba;
+use crate::base::pixels::{Rgba, texture_place};
 use crate::base::problem::Problem;
 use crate::base::reduce::Reduced;
 use crate::layers::mesh::pose::Placed;
-use crate::layers::mesh::surface::{Before, Look, Reader, ReadySurface, StillSurface, SurfaceSlot, place};
+use crate::layers::mesh::surface::{Before, Look, Reader, ReadySurface, StillSurface, SurfaceSlot};
 use crate::layers::parts::materials::{List, Of, Use, What};
 use crate::layers::parts::moment::Moment;
 use crate::layers::parts::plan::Bind;
@@ -70,7 +70,7 @@ struct Still<'a>(&'a Picture);
 
 impl Still<'_> {
     fn color(&self, uv: DVec2) -> Rgba {
-        let (x, y) = place(uv, (self.0.width(), self.0.height()));
+        let (x, y) = texture_place(uv.to_array(), (self.0.width(), self.0.height()));
         self.0.read_repeated(x, y)
     }
 }
