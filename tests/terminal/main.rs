@@ -7,6 +7,7 @@ use portable_pty::PtySize;
 
 mod life;
 mod pieces;
+mod shell;
 mod support;
 mod tutor;
 

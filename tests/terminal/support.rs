@@ -40,10 +40,24 @@ impl Editor {
     }
 
     fn on(term: &str, folder: &Path, arguments: &[&str]) -> Editor {
-        let size = PtySize { rows: 24, cols: 80, pixel_width: 0, pixel_height: 0 };
-        let pair = native_pty_system().openpty(size).unwrap();
         let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_plica"));
         command.args(arguments);
+        Editor::start(command, term, folder)
+    }
+
+    /// A shell in place of the editor, which finds `plica`.
+    pub fn bash(folder: &Path) -> Editor {
+        let mut command = CommandBuilder::new("bash");
+        command.args(["--norc", "--noprofile", "-i"]);
+        let plica = Path::new(env!("CARGO_BIN_EXE_plica")).parent().unwrap();
+        command.env("PATH", format!("{}:{}", plica.display(), std::env::var("PATH").unwrap()));
+        command.env("PS1", "> ");
+        Editor::start(command, "xterm-256color", folder)
+    }
+
+    fn start(mut command: CommandBuilder, term: &str, folder: &Path) -> Editor {
+        let size = PtySize { rows: 24, cols: 80, pixel_width: 0, pixel_height: 0 };
+        let pair = native_pty_system().openpty(size).unwrap();
         command.cwd(folder);
         command.env("TERM", term);
         for (name, own) in

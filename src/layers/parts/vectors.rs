@@ -237,7 +237,10 @@ impl VectorLook {
         match self.color {
             Coloring::Plain => None,
             Coloring::Direction => Some(hue(atan2(vector.y, vector.x) / TAU)),
-            Coloring::Length | Coloring::Divergence | Coloring::Curl => Some(self.color(vector, slopes, reach)),
+            Coloring::Length | Coloring::Divergence | Coloring::Curl => {
+                // Thin lines with dark rims: the dark ends of scales would not be seen.
+                Some(self.color(vector, slopes, reach).map(|code| code / 4 * 3 + 64))
+            }
         }
     }
 
