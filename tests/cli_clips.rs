@@ -109,7 +109,11 @@ fn a_short_or_small_clip_gets_a_layer_that_fits_it() {
         plica(folder.path(), &["check", &scene], true);
     }
     std::fs::remove_file(at("two/0001.png")).unwrap();
-    plica(folder.path(), &["new", "two/%04d.png", "-o", "one.plica.json"], true);
+    let (_, messages) = plica(folder.path(), &["new", "two/%04d.png", "-o", "one.plica.json"], true);
+    assert!(
+        messages.contains("nothing moves in 0000.png alone (put") && messages.contains("has 1 frame of"),
+        "{messages}"
+    );
     plica(folder.path(), &["check", "one.plica.json"], true);
 }
 

@@ -215,6 +215,7 @@ const TOLD: &[(&[&str], &str, bool)] = &[
     (&["new", "from/bare.gltf"], "from/bare.gltf: its picture is not shown: gone.png: there is no such file", true),
     (&["new", "cat.obj"], "cat.obj: is a PNG picture, not a mesh (rename it if it is to be shown as a picture;", false),
     (&["new", ""], "a word of the line is empty, as \"\" is", false),
+    (&["new", "flat.obj", "-o", "from"], "from: is a folder (name a file in it, as from/NAME.plica.json)", false),
     (&["new", "dir.obj"], "dir.obj: is a folder, not a model (name the model in it)", false),
     (&["new", "flat.obj", "./flat.obj"], "./flat.obj: is named twice (name it once", false),
     (&["new", "flatt.glb"], "flatt.glb: there is no such file (did you mean flat.obj?)", false),

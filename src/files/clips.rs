@@ -1,11 +1,13 @@
 //! Clips that a person names to make a scene of them: numbered pictures, by a pattern or by their folder, or a video.
 
 use std::io::ErrorKind;
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use super::{Limits, disk, paths, picture};
 use crate::base::error::{Error, Result};
 use crate::base::numbered::{Pattern, Series, series};
+use crate::base::problem;
 use crate::layers::parts::materials::List;
 
 /// The files of a clip.
@@ -22,6 +24,12 @@ pub struct ClipFiles {
 }
 
 impl ClipFiles {
+    /// The only one of its numbered files, of which nothing can move yet.
+    pub fn alone(&self) -> Option<&str> {
+        let [alone] = self.files.as_slice() else { return None };
+        (*alone != self.name).then_some(alone)
+    }
+
     /// Whether nothing moves in it, as far as its first, its middle and its last file tell.
     pub fn is_still(&self, limits: &Limits) -> bool {
         let read = |name: &String| paths::read(&self.folder.join(name), limits.memory).ok();
@@ -40,12 +48,15 @@ fn is_video(name: &str) -> bool {
     paths::kind_of(name) == Some(List::Clips)
 }
 
-/// Whether a person means a clip by this path.
+/// Whether a person means a clip by this path. A file that is called as a pattern would be is that file.
 pub fn is_one(path: &Path) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     // What stands for a number otherwise than is known is told as that.
-    let is_pattern = Pattern::of(&name).map_or(name.contains("%0"), |pattern| pattern.is_numbered());
-    path.is_dir() || is_video(&name) || is_pattern && !picture::is_one(path)
+    let as_number =
+        |spec: &str| spec.trim_start_matches(|c: char| c == '-' || c.is_ascii_digit()).starts_with(['d', 's', 'x']);
+    let is_odd = || name.contains("%0") || name.split('%').skip(1).any(as_number);
+    let is_pattern = || Pattern::of(&name).map_or_else(|_| is_odd(), |pattern| pattern.is_numbered());
+    path.is_dir() || is_video(&name) || !path.is_file() && is_pattern()
 }
 
 /// What a clip is called in a scene, by the name of its files: what is before the number, or the name of their folder.
@@ -71,13 +82,46 @@ pub fn find(path: &Path) -> Result<ClipFiles> {
         let (folder, name) = (folder.to_owned(), name.into_owned());
         return Ok(ClipFiles { folder, first: 0, files: vec![name.clone()], name });
     }
-    let mut numbers: Vec<u64> = names(folder)?.iter().filter_map(|name| pattern.number(name)).collect();
-    numbers.sort_unstable();
+    let names = names(folder)?;
+    let numbers = numbers(&names, &pattern);
     if numbers.is_empty() {
-        let cure = format!("the first frame would be {} or {}", pattern.name(0), pattern.name(1));
-        return Err(Error::at(path.display(), "there is no such file").cure(cure));
+        return Err(Error::at(path.display(), "there is no such file").cure(meant(path, &pattern, &names)));
     }
     Ok(found(folder, Series { pattern: name.into_owned(), numbers }))
+}
+
+/// The numbers that files have by a pattern, ascending.
+fn numbers(names: &[String], pattern: &Pattern) -> Vec<u64> {
+    let mut numbers: Vec<u64> = names.iter().filter_map(|name| pattern.number(name)).collect();
+    numbers.sort_unstable();
+    numbers
+}
+
+/// What to do about a pattern by which no file is called: others may be there, by another pattern.
+fn meant(path: &Path, pattern: &Pattern, names: &[String]) -> String {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let mut there = series(names.iter().map(String::as_str));
+    there.retain(|one| one.numbers.len() > 1);
+    let like = problem::like(&name, there.iter().map(|one| one.pattern.as_str()));
+    let one = match (like, there.as_slice()) {
+        (Some(like), all) => all.iter().find(|one| one.pattern == like),
+        (None, [one]) => Some(one),
+        (None, _) => None,
+    };
+    match one.and_then(|one| Some((one.file(0)?, one.file(one.numbers.len() - 1)?, &one.pattern))) {
+        Some((first, last, other)) => {
+            format!("{first} to {last} are there: write {}", path.with_file_name(other).display())
+        }
+        None => format!("its frames would be called {}, {} and so on", pattern.name(0), pattern.name(1)),
+    }
+}
+
+/// The numbers of a clip's files that are nearest to `first` and follow each other without a gap.
+pub fn run_near(path: &Path, first: u64) -> Option<RangeInclusive<u64>> {
+    let pattern = Pattern::of(path.file_name()?.to_str()?).ok()?;
+    let numbers = numbers(&names(disk::folder_of(path)).ok()?, &pattern);
+    let runs = numbers.chunk_by(|one, next| one + 1 == *next).filter_map(|run| Some(*run.first()?..=*run.last()?));
+    runs.min_by_key(|run| first.abs_diff(first.clamp(*run.start(), *run.end())))
 }
 
 /// The patterns of numbered files that begin with `typed`, or whose first file does, relative to `folder` unless absolute.
@@ -171,6 +215,7 @@ mod tests {
         assert!(!is_still());
         (1..4).for_each(|number| std::fs::remove_file(folder.path().join(format!("{number}.png"))).unwrap());
         assert!(!is_still(), "a single picture");
+        assert_eq!(find(&folder.path().join("%d.png")).unwrap().alone(), Some("0.png"));
     }
 
     #[test]
@@ -182,6 +227,9 @@ mod tests {
         assert_eq!(find(&folder.path().join("a/%04d.png")).unwrap(), by_folder);
         assert_eq!((by_folder.name.as_str(), by_folder.first), ("%04d.png", 7));
         assert_eq!(by_folder.files, ["0007.png", "0008.png"]);
+        for (first, run) in [(0, 7..=8), (8, 7..=8), (10, 10..=10), (99, 10..=10)] {
+            assert_eq!(run_near(&folder.path().join("a/%04d.png"), first), Some(run), "{first}");
+        }
     }
 
     #[test]
@@ -197,17 +245,29 @@ mod tests {
             ("nosuch/%04d.png", "nosuch: there is no such folder"),
             ("some", "some: holds 2 numbered pictures among other files (if they are a clip, name "),
             ("two", "two: holds several clips: a%d.png, b%d.png (name one of them, as "),
-            ("two/%04d.png", "two/%04d.png: there is no such file (the first frame would be 0000.png or 0001.png)"),
+            ("two/%04d.png", "there is no such file (its frames would be called 0000.png, 0001.png and so on)"),
+            ("some/%04d.jpg", "there is no such file (a1.png to a2.png are there: write "),
+            ("some/a%03d.png", "some/a%d.png)"),
+            ("one/%d.png", "there is no such file (its frames"),
+            ("two/a%d%d.png", "the name holds two frame numbers (%04d stands for"),
+            ("two/%s.png", "\"%s\" is no frame number (%04d stands for"),
+            ("two/%-4d.png", "\"%-\" is no frame number (%04d stands for"),
             ("two/%x.png", "\"%x\" is no frame number (%04d stands for"),
             ("two/%0999999999d.png", "\"%0999999999d\" asks for more than 20 digits (%04d stands for"),
             ("two/%99999999999999999999999d.png", "asks for more than 20 digits (%04d stands for"),
         ] {
-            let error = find(&folder.path().join(name)).unwrap_err().to_string();
+            let path = folder.path().join(name);
+            assert!(is_one(&path) || path.is_dir(), "{name}");
+            let error = find(&path).unwrap_err().to_string();
             assert!(error.contains(told), "{error}");
         }
         assert!(!is_one(&folder.path().join("none/cat.png")) && is_one(&folder.path().join("none")));
         assert!(is_one(Path::new("x.MP4")) && is_one(Path::new("%d.png")) && !is_one(Path::new("x.png")));
         assert!(is_one(Path::new("x%04x.png")) && !is_one(Path::new("100%.png")));
+        let called_so = folder.path().join("none/100%d.obj");
+        assert!(is_one(&called_so), "a pattern");
+        std::fs::write(&called_so, "").unwrap();
+        assert!(!is_one(&called_so), "a file of that name");
     }
 
     #[test]

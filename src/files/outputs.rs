@@ -184,12 +184,15 @@ impl Guard {
         self.inputs.iter().find(is).map(|input| input.what.as_str())
     }
 
-    /// Refuses a file that must not be replaced, and standard output.
+    /// Refuses a file that must not be replaced, a link that leads to none, and standard output.
     ///
     /// # Errors
     /// The message says why.
     pub fn spare(&self, path: &Path) -> Result<()> {
         no_stream(path)?;
+        if let Some(what) = paths::dead_link(path) {
+            return Err(Error::at(path.display(), what).cure("mend the link, or name another place for the output"));
+        }
         match self.kept(path) {
             None => Ok(()),
             Some(what) => Err(Error::at(path.display(), format!("{what}: no output may replace it"))
@@ -360,6 +363,9 @@ mod tests {
         symlink("link.png", root.join("chain.png")).unwrap();
         symlink("sub", root.join("folder")).unwrap();
         symlink("s.plica.json", root.join("scene-link.png")).unwrap();
+        symlink("away.png", root.join("nowhere.png")).unwrap();
+        symlink("loop.png", root.join("loop.png")).unwrap();
+        symlink("other.png", root.join("another.png")).unwrap();
         fs::hard_link(root.join("sub/cat.png"), root.join("hard.png")).unwrap();
         let mut guard = Guard::new(true);
         guard.protect(&root.join("s.plica.json"), Document::parse(text).unwrap().scene());
@@ -389,6 +395,9 @@ mod tests {
             (".s.journal", Some("journal")),
             (".s.editor", Some("journal")),
             ("other.png", None),
+            ("another.png", None),
+            ("nowhere.png", Some("is a link to away.png, which is not there (mend the link, or name another place")),
+            ("loop.png", Some("is a link that leads back to itself (mend the link, or name another place")),
             ("sub/missing.flo", None),
             ("new.png", None),
             ("sub/cat2.png", None),

@@ -150,19 +150,30 @@ fn explain(place: &str, path: &Path, error: io::Error) -> Error {
             .cure("copy the file beside the scene, or give --allow-outside"),
         io::ErrorKind::NotFound => {
             let missing = || Error::at(place, "there is no such file").cure(how_to_find(path));
-            no_layer(place, path).or_else(|| dangling(place, path)).unwrap_or_else(missing)
+            no_layer(place, path)
+                .or_else(|| dead_link(path).map(|what| Error::at(place, what).cure("mend the link")))
+                .unwrap_or_else(missing)
         }
         io::ErrorKind::NotADirectory => Error::at(place, "is to be in a folder that is a file").cure("mend the path"),
         io::ErrorKind::PermissionDenied => Error::at(place, "may not be read").cure("change who may read it"),
-        _ if beneath::is_loop(&error) => Error::at(place, "is a link that leads back to itself").cure("mend the link"),
+        _ if beneath::is_loop(&error) => Error::at(place, LOOP).cure("mend the link"),
+        _ if place.contains('\0') => {
+            Error::at(place, "holds a NUL, which no name of a file does").cure("mend the name")
+        }
         _ => Error::at(place, format!("cannot be opened: {error}")),
     }
 }
 
-/// That it is a link, if it is one to what is not there.
-fn dangling(place: &str, path: &Path) -> Option<Error> {
-    let to = std::fs::read_link(path).ok()?;
-    Some(Error::at(place, format!("is a link to {}, which is not there", to.display())).cure("mend the link"))
+const LOOP: &str = "is a link that leads back to itself";
+
+/// What is said of a link that leads to nothing, if it is one.
+pub(super) fn dead_link(path: &Path) -> Option<String> {
+    let (to, error) = (std::fs::read_link(path).ok()?, path.metadata().err()?);
+    Some(if beneath::is_loop(&error) {
+        LOOP.to_owned()
+    } else {
+        format!("is a link to {}, which is not there", to.display())
+    })
 }
 
 /// What to do about a file that is not there: its folder may be missing, or another be meant.
@@ -275,7 +286,7 @@ mod tests {
             ("sub/b.GLB#x", Some("only an OpenEXR has layers"), Some("(leave #x out)")),
             ("sub/cat.png#x", Some("only an OpenEXR has layers"), Some("(leave #x out)")),
             ("sub/a.exr#", Some("has no name of a layer after the #"), Some("name the layer")),
-            ("a\0b", Some("cannot be opened"), Some("cannot be opened")),
+            ("a\0b", Some("holds a NUL, which no name of a file does (mend"), Some("holds a NUL")),
             ("", Some("no such file"), Some("a folder")),
         ] {
             for (allow_outside, refusal) in [(false, beneath), (true, anywhere)] {

@@ -10,6 +10,7 @@ use super::scene_options::SceneOptions;
 use crate::base::error::{Error, Result};
 use crate::base::pointer::Pointer;
 use crate::base::problem::{Problem, Severity};
+use crate::base::text::counted;
 use crate::files::clips::ClipFiles;
 use crate::files::materials::{self, Cache};
 use crate::files::{self, clips, disk, models, outputs, paths, sources, write};
@@ -109,6 +110,10 @@ fn refuse_place(path: &Path) -> Result<()> {
     if there.as_ref().is_err_and(|error| error.kind() == ErrorKind::InvalidFilename) {
         return Err(Error::at(path.display(), "is too long a name for a file").cure("name the scene with -o"));
     }
+    if path.is_dir() {
+        let cure = format!("name a file in it, as {}", path.join("NAME.plica.json").display());
+        return Err(Error::at(path.display(), "is a folder").cure(cure));
+    }
     if there.is_ok() {
         let cure = format!("edit it (plica edit {}), or choose another name with -o", path.display());
         return Err(Error::at(path.display(), "is there already").cure(cure));
@@ -184,6 +189,8 @@ impl Making<'_> {
         self.notes.extend(problems.into_iter().map(|Problem { message, hint, .. }| {
             hint.into_iter().fold(Error::at(&place, message), Error::cure).to_string()
         }));
+        let still = |alone| format!("{place}: nothing moves in {alone} alone (put the next frames beside it)");
+        self.notes.extend(found.alone().map(still));
         let path = match below(&found.folder, self.path) {
             Some(folder) => folder.join(&found.name),
             None => {
@@ -198,8 +205,10 @@ impl Making<'_> {
         self.start = std::mem::take(&mut self.start).clip(&name, path, found.first, Some(known));
         if let Some(fitted) = self.start.fitted() {
             let Known { size_px: (width, height), frames, .. } = known;
-            self.notes
-                .push(format!("{place}: has {frames} frames of {width} x {height}: its layer begins with {fitted}"));
+            self.notes.push(format!(
+                "{place}: has {} of {width} x {height}: its layer begins with {fitted}",
+                counted(frames, "frame")
+            ));
         }
         Ok(())
     }

@@ -79,6 +79,11 @@ impl Synth {
         Synth { stage: Arc::new(stage), ..self.clone() }
     }
 
+    /// The same with only one of its layers, over nothing.
+    pub fn only(&self, layer: usize) -> Synth {
+        Synth { stage: Arc::new(self.stage.only(layer)), ..self.clone() }
+    }
+
     /// The same with so many births left out after each that is shown: see [`Moment::left_out`].
     #[cfg(feature = "window")]
     pub fn thinned(&self, left_out: u32) -> Synth {

@@ -48,18 +48,20 @@ pub fn overlay(scene: &Scene, synth: Option<&Synth>, view: &View) -> Vec<Mark> {
     let reach = synth.filter(|_| of_pixels).map_or(Reach::default(), |synth| reach(synth, &view.vectors));
     let view = View { reach, ..view.clone() };
     let t = view.times.first().copied().unwrap_or(0.0);
-    let synth = synth.map(|synth| (synth, synth.moment(t)));
+    let alone = synth.zip(view.only).map(|(synth, layer)| synth.only(layer));
+    let synth = alone.as_ref().or(synth).map(|synth| (synth, synth.moment(t)));
     let nearest = synth.as_ref().map(|(synth, moment)| nearest(synth, moment, &view)).unwrap_or_default();
     let textures = if view.of_textures { BTreeSet::new() } else { scene.textures() };
+    let is_shown = |i: usize| !textures.contains(&i) && view.only.is_none_or(|only| only == i);
     let mut marks = Vec::new();
     if let Some((synth, moment)) = &synth {
-        for (i, layer) in synth.layers.iter().enumerate().filter(|(i, _)| !textures.contains(i)) {
+        for (i, layer) in synth.layers.iter().enumerate().filter(|(i, _)| is_shown(*i)) {
             let selection = selected_in(i, &view).map(str::to_owned);
             let own = View { nearest: nearest.get(&i).cloned(), selection, ..view.clone() };
             marks.extend(of_layer(i, layer.marks(&own, moment), &view));
         }
     }
-    for (i, layer) in scene.layers.iter().enumerate().filter(|(i, _)| !textures.contains(i)) {
+    for (i, layer) in scene.layers.iter().enumerate().filter(|(i, _)| is_shown(*i)) {
         marks.extend(of_layer(i, layer.technique().marks(&view), &view));
     }
     for (_, moment) in synth.iter().filter(|(synth, _)| synth.stage.seen_by().is_some()) {
@@ -178,6 +180,11 @@ mod tests {
         for (shown, edges) in [(&["view-wires"][..], 9), (&["view-wires", "view-backs"], 10), (&["view-backs"], 0)] {
             let marks = overlay(&scene, Some(&synth), &View { cell_px: 4.0, ..View::of(shown) });
             assert_eq!(marks.iter().filter(|mark| mark.look.name == "edge").count(), edges, "{shown:?}");
+        }
+        for only in [0, 1] {
+            let marks = overlay(&scene, Some(&synth), &View { only: Some(only), ..View::of(&["view-wires"]) });
+            assert!(marks.iter().all(|mark| mark.layer == Some(only)), "{only}");
+            assert_eq!(marks.len(), 5, "nothing hides what is alone: {only}");
         }
     }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::stage::{Group, Stage};
+use super::stage::Group;
 use super::{Synth, cpu, made};
 use crate::base::pixels::{Frame, Grid, Linear, Rgba, encode};
 use crate::base::problem::{like, nearest, quoted, there_are};
@@ -91,10 +91,22 @@ impl Asked {
         Ok(Asked { pass, of, layer: layer.map(index).transpose()? })
     }
 
+    /// The only layer that is shown, by its index, where a pass that [`Asked::parse`] reads is of one.
+    pub fn only_shown(pass: Option<&str>, scene: &Scene) -> Option<usize> {
+        Asked::parse(pass?, scene).ok()?.layer
+    }
+
     /// That the pass is empty, if no layer has something in it.
     pub fn emptiness(&self, scene: &Scene) -> Option<String> {
-        let empty = !is_shown(self.pass, self.layer, scene);
-        empty.then(|| format!("no layer has {}: the picture is empty", self.words(scene)))
+        if is_shown(self.pass, self.layer, scene) {
+            return None;
+        }
+        let layer = self.layer.and_then(|layer| scene.layers.get(layer)).map(|layer| layer.technique());
+        let why = match layer.filter(|layer| layer.kind().space != Space::World) {
+            Some(flat) => format!("{} is not a layer in space", flat.name()),
+            None => format!("no layer has {}", self.words(scene)),
+        };
+        Some(format!("{why}: the picture is empty"))
     }
 
     /// What its colors mean where it is looked at, by names.
@@ -130,7 +142,7 @@ impl Asked {
     /// The synthesis that is to be shown for it.
     pub fn only(&self, synth: &Synth) -> Synth {
         match self.layer {
-            Some(layer) => Synth { stage: Stage::only(&synth.stage, layer).into(), ..synth.clone() },
+            Some(layer) => synth.only(layer),
             None => synth.clone(),
         }
     }
@@ -328,6 +340,9 @@ mod tests {
             assert_eq!(shown(&scene), passes, "{layer}");
             let depth = Asked::parse("depth", &scene).unwrap();
             assert_eq!(depth.emptiness(&scene).is_none(), passes.contains(&"depth"), "{layer}");
+            let is_flat = layer.contains("fill");
+            let told = Asked::parse("uv:a", &scene).unwrap().emptiness(&scene);
+            assert_eq!(told.is_some_and(|told| told.starts_with("a is not a layer in space:")), is_flat, "{layer}");
         }
     }
 

@@ -53,12 +53,19 @@ pub fn problems(scene: &Scene) -> Vec<Problem> {
             if known.contains(name) || unknown.len() == MAX_REFERENCES {
                 continue;
             }
-            let hint = nearest(name, known.iter().copied());
+            // A layer that shows itself is no cure.
+            let own = layer.technique().name();
+            let others = known.iter().copied().filter(|other| list != List::Layers || *other != own);
+            let hint = nearest(name, others);
             let hint = hint.unwrap_or_else(|| match list {
                 List::Shapes => "the scene has no shapes yet: share one of its paths (:share NAME)".to_owned(),
+                _ if name.is_empty() => format!("add one to the scene's {key} first, and name it here"),
                 List::Images | List::Meshes | List::Clips | List::Layers => format!("add it to the scene's {key}"),
             });
-            let message = format!("there is no {item} {}", quoted(name));
+            let message = match name {
+                "" => format!("names no {item}"),
+                _ => format!("there is no {item} {}", quoted(name)),
+            };
             unknown.push(Problem::error(format!("/layers/{i}{}", used.at), message).hint(hint));
         }
         problems.extend(unknown);
@@ -84,4 +91,27 @@ fn circle(scene: &Scene, layer: usize) -> Option<Problem> {
         false => format!("the layer shows itself, by {}", quoted(scene.layers[shown].technique().name())),
     };
     Some(Problem::error(format!("/layers/{layer}{at}"), what).hint("name a layer that does not show this one"))
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn what_is_named_and_not_there_is_told_with_the_cure() {
+        for (surface, told, cure) in [
+            (json!({ "kind": "texture", "image": "" }), "names no image", "add one to the scene's images first"),
+            (json!({ "kind": "texture", "image": "a" }), "there is no image \"a\"", "add it to the scene's images"),
+            (json!({ "kind": "layer", "layer": "" }), "names no layer", "add one to the scene's layers first"),
+            (json!({ "kind": "layer", "layer": "spo" }), "there is no layer \"spo\"", "add it to the scene's layers"),
+        ] {
+            let layer = json!({ "kind": "mesh", "name": "spot", "mesh": "m", "surface": surface });
+            let scene = json!({ "plica": 1, "meshes": { "m": { "path": "m.obj" } }, "layers": [layer] });
+            let found = problems(&serde_json::from_value(scene).unwrap());
+            let [Problem { message, hint: Some(hint), .. }] = &found[..] else { panic!("{found:?}") };
+            assert!(message == told && hint.starts_with(cure), "{surface}: {message} ({hint})");
+        }
+    }
 }

@@ -17,7 +17,7 @@ pub fn parse(text: &str, size: (usize, usize)) -> Result<(usize, usize)> {
     let in_ratio = |side: usize, of: usize, other: usize| ((side * other + of / 2) / of.max(1)).max(1);
     let (width, height) = match sides.ok_or_else(|| wrong("not a width and a height"))? {
         (w, h) if w > MOST || h > MOST => return Err(wrong("a side is at most 1048576 pixels")),
-        (0, 0) => size,
+        (0, 0) => return Err(wrong("0 is for one side")),
         (w, 0) => (w, in_ratio(w, size.0, size.1)),
         (0, h) => (in_ratio(h, size.1, size.0), h),
         both => both,
@@ -47,17 +47,12 @@ mod tests {
 
     #[test]
     fn sizes() {
-        for (text, size) in [
-            ("640x480", (640, 480)),
-            ("150x0", (150, 100)),
-            ("0x50", (75, 50)),
-            ("0x0", (300, 200)),
-            ("1x0", (1, 1)),
-            ("20 X 10", (20, 10)),
-        ] {
+        for (text, size) in
+            [("640x480", (640, 480)), ("150x0", (150, 100)), ("0x50", (75, 50)), ("1x0", (1, 1)), ("20 X 10", (20, 10))]
+        {
             assert_eq!(parse(text, (300, 200)).unwrap(), size, "{text}");
         }
-        for text in ["640", "x", "1x2x3", "-1x5", "1048577x1", "99999x99999", ""] {
+        for text in ["640", "0x0", "x", "1x2x3", "-1x5", "1048577x1", "99999x99999", ""] {
             assert_eq!(parse(text, (300, 200)).unwrap_err().exit_status(), 2, "{text}");
         }
     }

@@ -3,6 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::fs::File;
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -17,7 +18,6 @@ use crate::base::error::{Error, Result};
 use crate::base::picture::Picture;
 use crate::base::pointer::Pointer;
 use crate::base::problem::Problem;
-use crate::files::clips::ClipFiles;
 use crate::files::limits::within;
 use crate::files::{self, disk, mesh, paths, picture, video};
 use crate::scene::{self, Scene};
@@ -163,10 +163,10 @@ impl Sources<'_> {
             // Only a clip that says how many there are counts on one that is not there.
             return error.cure(format!("lower the clip's count to {before}, or put the frame there"));
         }
-        let there = files::clips::find(&paths::beside(scene_path, &clip.path));
-        let Ok(ClipFiles { first, files, .. }) = there else { return error };
-        let last = first + files.len().saturating_sub(1) as u64;
-        error.cure(format!("numbers {first} to {last} are there: set the clip's first to {first}"))
+        let there = files::clips::run_near(&paths::beside(scene_path, &clip.path), clip.first.into());
+        let Some((first, last)) = there.map(RangeInclusive::into_inner) else { return error };
+        let found = if first == last { format!("number {first} is") } else { format!("numbers {first} to {last} are") };
+        error.cure(format!("{found} there: set the clip's first to {first}"))
     }
 
     fn is_there(&self, path: &str) -> bool {

@@ -104,6 +104,8 @@ pub enum When {
 pub struct View {
     /// Overlays, by their names.
     pub shown: BTreeSet<&'static str>,
+    /// The only layer whose marks are shown, by its index; `None` for all of them.
+    pub only: Option<usize>,
     /// The distance between pixels that have marks, in pixels of the picture.
     pub spacing_px: f64,
     /// The same for marks that are cells of color.

@@ -78,9 +78,10 @@ pub(super) fn wanted(args: &Args, scene: &Scene) -> Result<(Vec<u64>, Option<Str
     let all = scene.timeline.frames();
     match &args.frames {
         Some(text) => Ok((range::parse(text, all)?, None)),
-        None if all > 1 && is_one_picture(&args.output) && !check::moves(scene) => {
-            Ok((vec![0], Some("nothing moves in the scene: this is its one picture".into())))
-        }
+        None if all > 1 && !check::moves(scene) => Ok(match is_one_picture(&args.output) {
+            true => (vec![0], Some("nothing moves in the scene: this is its one picture".into())),
+            false => ((0..all).collect(), Some(format!("nothing moves in the scene: all {all} frames are the same"))),
+        }),
         None => Ok(((0..all).collect(), None)),
     }
 }

@@ -170,7 +170,9 @@ impl OpenWindow {
                 let in_space = state.pointed().filter(|_| state.camera.is_some());
                 state.under = in_space.and_then(|at| {
                     let synth = seen(&show.synth, state.own_camera().as_ref());
-                    under(&show.scene, &synth, state.transport.scene_time(&state.timeline), at)
+                    let only = Asked::only_shown(state.pass.as_deref(), &show.scene).map(|layer| synth.only(layer));
+                    let synth = only.as_ref().unwrap_or(&synth);
+                    under(&show.scene, synth, state.transport.scene_time(&state.timeline), at)
                 });
                 let pictures = self.pictures(state, show, (marks.revision, wake))?;
                 let looks = state.own.map(|own| (own, state.transport.scene_time(&state.timeline), marks.revision));

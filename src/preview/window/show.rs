@@ -18,6 +18,7 @@ use crate::layers::parts::vectors::Reach;
 use crate::layers::space::camera::Camera;
 use crate::render::Synth;
 use crate::render::overlay::{aimed, overlay, overlays, reach};
+use crate::render::passes::Asked;
 use crate::render::reduce::reduced;
 use crate::scene::grips::{Grip, grips};
 use crate::scene::{Document, Scene, words::item_of};
@@ -135,17 +136,19 @@ impl Cached {
         let viewport = state.viewport.clone();
         let (window, scale, grid) = (state.window, state.scale, state.shows("view-grid"));
         let sight = Basis { viewport, window, scale, grid, revision: self.revision, letters: letters.generation() };
-        let fixed = Some((state.fixed_view(), sight.clone()));
-        let moving = Some((state.moving_view(), sight, state.own));
+        let only = Asked::only_shown(state.pass.as_deref(), &show.scene);
+        let [fixed, moving] = [state.fixed_view(), state.moving_view()].map(|view| View { only, ..view });
         self.follow_drag(state, show);
-        if self.made_for != fixed {
-            self.made_for = fixed;
-            self.make_fixed(state, show, letters);
+        let made_for = Some((fixed.clone(), sight.clone()));
+        if self.made_for != made_for {
+            self.made_for = made_for;
+            self.make_fixed(state, show, &fixed, letters);
         }
-        if self.moved_for != moving {
-            self.moved_for = moving;
+        let moved_for = Some((moving.clone(), sight, state.own));
+        if self.moved_for != moved_for {
+            self.moved_for = moved_for;
             let synth = seen(&show.synth, state.own_camera().as_ref());
-            let found = overlay(&show.scene, Some(&synth), &state.moving_view());
+            let found = overlay(&show.scene, Some(&synth), &moving);
             self.moving_grips = found.iter().filter_map(grip).collect();
             let (viewport, area, scale) = (&state.viewport, state.area(), state.scale);
             self.moving = marks::draw(&found, viewport, area, scale);
@@ -162,9 +165,8 @@ impl Cached {
         self.dragged = marks::draw(&found, &state.viewport, state.area(), state.scale);
     }
 
-    fn make_fixed(&mut self, state: &State, show: &Show, letters: &Letters) {
-        let view = state.fixed_view();
-        let mut found = overlay(&show.scene, Some(&show.synth), &view);
+    fn make_fixed(&mut self, state: &State, show: &Show, view: &View, letters: &Letters) {
+        let mut found = overlay(&show.scene, Some(&show.synth), view);
         found.extend(show.marks.iter().cloned());
         self.grips = view.selection.as_deref().map_or_else(Vec::new, |at| grips(&show.document, at));
         self.fixed = Canvas::default();
@@ -197,6 +199,10 @@ mod tests {
             assert_eq!(under(&scene, &synth, 0.0, Point::new(x, 20.0)).as_deref(), told, "{x}");
         }
         assert_eq!(under(&scene, &synth, 0.0, Point::new(-1.0, 20.0)), None);
+        let only = Asked::only_shown(Some("depth:far"), &scene).unwrap();
+        let [all, far] =
+            [&synth, &synth.only(only)].map(|synth| under(&scene, synth, 0.0, Point::new(40.0, 20.0)).unwrap());
+        assert!(all.starts_with("near, triangle") && far.starts_with("far, triangle"), "{all} {far}");
     }
 
     #[test]

@@ -108,6 +108,8 @@ impl State {
         let Some((before, now)) = before.zip(self.looking()).filter(|_| steps > 0.0) else { return };
         let went = before.distance() - now.distance();
         self.words.told = match self.ahead(&before) {
+            // What stands in the bar then says more.
+            _ if went <= 0.0 && self.sees_nothing => None,
             _ if went <= 0.0 => Some("as near as it goes: k walks on, 5 shows everything".to_owned()),
             Some(depth) if depth <= went + NEAR_M => {
                 Some("through a surface, whose back is not shown: 3 goes back, 5 shows everything".to_owned())
@@ -153,6 +155,9 @@ mod tests {
         let (through, end): (Vec<_>, Vec<_>) = told.into_iter().partition(|(what, _)| what == "through");
         assert!(matches!(&through[..], [(_, at)] if (-0.25..0.01).contains(at)), "{through:?}");
         assert!(end.len() > 2 && end.iter().all(|(what, at)| what == "as" && *at < -0.4), "{end:?}");
+        state.sees_nothing = true;
+        state.run("dolly-nearer");
+        assert_eq!(state.words.told, None, "that nothing is seen says more");
         state.run("dolly-farther");
         assert_eq!(state.words.told, None);
     }

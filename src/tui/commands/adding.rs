@@ -24,7 +24,11 @@ pub const COMMANDS: &[Command] = &[command(
 .counted_with(&[""])];
 
 fn add(state: &mut State, call: &Call) -> Done {
-    match call.path()? {
+    // The name of a file that is there needs no quotes, whatever is in it.
+    let whole = paths::typed(call.text);
+    let is_there = call.text.contains(' ') && beside(state, &whole.to_string_lossy()).is_file();
+    let path = if is_there { Some(whole) } else { call.path()? };
+    match path {
         None => add_here(state, call.times_of("add")?),
         Some(_) if call.text.starts_with(['{', '[']) => {
             Err("add takes the path of a file; a value is added by :set PATH.-=VALUE, as layers.-".into())

@@ -73,7 +73,13 @@ pub fn overlays(state: &State) -> View {
         overlay.when == When::Document && !overlay.is_words && !state.picture.off.contains(overlay.name)
     };
     let of_document = overlay::overlays().filter(is_shown);
-    View { shown: of_document.map(|overlay| overlay.name).collect(), selection, ..View::default() }
+    let shown = of_document.map(|overlay| overlay.name).collect();
+    View { shown, selection, only: only_shown(state), ..View::default() }
+}
+
+/// The only layer that is shown, where a pass is of one.
+fn only_shown(state: &State) -> Option<usize> {
+    state.picture.pass.as_ref()?.layer
 }
 
 /// Whether a picture is seen in place of the scene.
@@ -95,7 +101,8 @@ fn switched(state: &State, part: &Part, protocol: Protocol, selects: bool) -> Vi
     let times = overlay::times(state.play.time, state.document().scene().timeline.wrap);
     let vectors = state.picture.switches.vectors.clone();
     let selection = Some(state.focused());
-    View { shown, spacing_px, cell_px, least_px, times, vectors, selection, ..View::default() }
+    let only = only_shown(state);
+    View { shown, only, spacing_px, cell_px, least_px, times, vectors, selection, ..View::default() }
 }
 
 fn wanted(state: &State) -> Option<Wanted> {

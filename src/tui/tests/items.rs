@@ -53,7 +53,7 @@ fn what_is_broken_is_not_added_and_what_a_file_is_its_content_tells() {
     let mut state = State::new(OpenScene::in_memory(&at("s.plica.json")), (80, 24), Depth::None);
     std::fs::create_dir_all(at("falls")).unwrap();
     image::RgbaImage::new(2, 2).save(at("cat.png")).unwrap();
-    for name in ["cat.obj", "falls/3.png", "falls/4.png"] {
+    for name in ["cat.obj", "falls/3.png", "falls/4.png", "the cat.png"] {
         std::fs::copy(at("cat.png"), at(name)).unwrap();
     }
     let models = [
@@ -78,6 +78,8 @@ fn what_is_broken_is_not_added_and_what_a_file_is_its_content_tells() {
         ("cat.png", false, "the image \"cat\" is among the images, and the layer \"cat\" shows it", "/images/cat"),
         ("cat.png", false, "and the layer \"cat 2\" shows it", "/layers/1/image"),
         ("tri.obj", false, "its points and lines are not drawn", "/meshes/tri"),
+        ("the cat.png", false, "the image \"the cat\" is among the images", "/images/the cat"),
+        ("the dog.png", true, "a path with spaces needs double quotes", ""),
         ("falls", false, "the clip \"falls\" is among the clips, and the layer \"falls\" shows it", "/clips/falls"),
     ] {
         let before = state.document().json().clone();

@@ -102,6 +102,12 @@ fn what_is_wrong_names_the_frame_and_the_cure() {
             "falls/0007.png: there is no such file (numbers 0 to 2 are there: set the clip's first to 0)",
         ),
         (
+            vec![2],
+            json!({ "first": 7 }),
+            None,
+            "falls/0007.png: there is no such file (number 0 is there: set the clip's first to 0)",
+        ),
+        (
             vec![2, 2],
             json!({ "count": 3 }),
             None,

@@ -34,10 +34,13 @@ pub(super) struct Document<'a> {
 }
 
 #[derive(Debug, Default, Deserialize)]
-#[serde(default)]
+#[serde(default, rename_all = "camelCase")]
 pub(super) struct Asset<'a> {
     #[serde(borrow)]
     pub(super) version: Text<'a>,
+    /// The version that a reader is to know, where that is not the same.
+    #[serde(borrow)]
+    pub(super) min_version: Text<'a>,
 }
 
 #[derive(Debug, Default, Deserialize)]

@@ -67,7 +67,8 @@ pub(super) fn read(bytes: &[u8], with: With) -> Result<(Builder, Vec<String>, Op
     ];
     let notes = notes.into_iter().filter(|(told, _)| *told).map(|(_, note)| note.to_owned());
     let cut = shown().find_map(|(shape, placed)| Some(format!("{}: {}", placed.called(), shape.cut.as_ref()?)));
-    let of_nodes = [flattened, nodes.iter().find_map(Placed::doubled), cut].into_iter().flatten();
+    let (doubled, stretched) = (nodes.iter().find_map(Placed::doubled), nodes.iter().find_map(Placed::stretched));
+    let of_nodes = [flattened, doubled, stretched, cut].into_iter().flatten();
     let notes = of_nodes.chain(notes).collect();
     Ok((builder, notes, pictures::first_file(&source)))
 }

@@ -10,6 +10,9 @@ use crate::base::problem::quoted;
 /// A matrix of this precision moves points in space: single precision is rounded to less.
 const ROUNDED: f64 = 1e-6;
 
+/// A rotation whose length is this near to 1 is written in few digits.
+const FEW_DIGITS: f64 = 0.01;
+
 /// A node of the default scene.
 pub(super) struct Placed<'a> {
     index: usize,
@@ -30,6 +33,15 @@ impl Placed<'_> {
         let is_doubled = matrix.is_some() && (translation.is_some() || rotation.is_some() || scale.is_some());
         is_doubled.then(|| {
             format!("{} has a matrix, beside which its translation, rotation and scale are not applied", self.called())
+        })
+    }
+
+    /// What of it is not as it is to be, and is applied all the same, in words.
+    pub(super) fn stretched(&self) -> Option<String> {
+        let length = DQuat::from_array(self.node.rotation.filter(|_| self.node.matrix.is_none())?).length();
+        let is_stretched = (length - 1.0).abs() > FEW_DIGITS;
+        is_stretched.then(|| {
+            format!("{}: its rotation is of length {length:.3}, and is taken as if that were 1", self.called())
         })
     }
 

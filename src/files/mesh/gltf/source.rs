@@ -10,7 +10,7 @@ use base64::alphabet;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use base64::{DecodeError, Engine};
 
-use super::document::{Buffer, Document, Text};
+use super::document::{Asset, Buffer, Document, Text};
 use crate::base::budget::{Budget, Share};
 use crate::base::error::{Error, Result};
 use crate::base::text::{byte_of_hex, counted, there_are};
@@ -63,8 +63,13 @@ pub(super) struct Source<'a> {
 impl<'a> Source<'a> {
     /// Takes a `.glb` or `.gltf` apart.
     pub(super) fn of(bytes: &'a [u8], with: With<'a>) -> Result<Source<'a>> {
-        let (json, binary) =
-            if bytes.starts_with(b"glTF") { chunks(bytes, with.place)? } else { (input::text(bytes), None) };
+        let (json, binary) = if bytes.starts_with(b"glTF") { chunks(bytes, with.place)? } else { (bytes, None) };
+        let json = input::text(json);
+        // What is skipped of a document is not looked at by its reader.
+        if let Err(error) = std::str::from_utf8(json) {
+            let what = format!("its JSON is no text from byte {} on: that is not UTF-8", error.valid_up_to());
+            return Err(Error::at(with.place, what).cure("export it again"));
+        }
         let share = with.budget.take(most_bytes(json), with.place)?;
         let document: Document = serde_json::from_slice(json).map_err(|error| explain(with.place, &error, json))?;
         let buffers = document.buffers.iter().map(|_| OnceCell::new()).collect();
@@ -75,13 +80,12 @@ impl<'a> Source<'a> {
     }
 
     fn check_version(&self) -> Result<()> {
-        let version = &self.document.asset.version.0;
-        if version.starts_with("2.") {
-            return Ok(());
-        }
-        let what = match version.is_empty() {
-            true => "is not a glTF file: it has no asset.version".to_owned(),
-            false => format!("is glTF {version}"),
+        let Asset { version: Text(version), min_version: Text(least) } = &self.document.asset;
+        let what = match (&**version, &**least) {
+            ("", _) => "is not a glTF file: it has no asset.version".to_owned(),
+            (version, _) if !version.starts_with("2.") => format!("is glTF {version}"),
+            (_, "" | "2.0") => return Ok(()),
+            (_, least) => format!("needs a reader of glTF {least}"),
         };
         Err(Error::at(self.with.place, what).cure("Plica reads glTF 2.0: export it again as .glb"))
     }
@@ -177,7 +181,8 @@ impl<'a> Source<'a> {
             let what = format!("has a part at {uri}, which Plica does not fetch");
             return Err(Error::at(self.with.place, what).cure("export it as .glb, which is one file"));
         }
-        unescaped(uri).ok_or_else(|| self.wrong(format!("has a part at {uri}, which is no path")))
+        let path = unescaped(uri).filter(|path| !path.contains('\0'));
+        path.ok_or_else(|| self.wrong(format!("has a part at {}, which is no path", uri.escape_debug())))
     }
 }
 

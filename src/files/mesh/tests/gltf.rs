@@ -140,6 +140,10 @@ fn triangles_come_as_lists_strips_and_fans() {
     assert_eq!(changed(&more).unwrap().1, [told, "2 of 4 triangles have no area and are never seen"]);
     for (change, told) in [
         (("/nodes/0/scale", json!([1, 1, 0])), "node 0 is made flat, itself or by one that it is in"),
+        (
+            ("/nodes/0/rotation", json!([0, 0, 0, 5])),
+            "node 0: its rotation is of length 5.000, and is taken as if that were 1",
+        ),
         (("/accessors/3/count", json!(5)), "node 0: mesh 0 lists triangles by 5 corners: the last 2 make none"),
     ] {
         assert_eq!(changed(&[change]).unwrap().1, [told]);

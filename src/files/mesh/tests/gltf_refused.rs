@@ -157,6 +157,8 @@ fn what_is_wrong_with_buffers_is_told_by_its_number() {
         ("/buffers/0/uri", json!("a/%2e%2e/x.bin"), format!("has a part at a/%2e%2e/x.bin, which is {OUTSIDE}")),
         ("/buffers/0/uri", json!("/x.bin"), format!("has a part at /x.bin, which is {OUTSIDE}")),
         ("/buffers/0/uri", json!("%ff.bin"), format!("has a part at %ff.bin, which is no path {AGAIN}")),
+        ("/buffers/0/uri", json!("a\0b"), format!("has a part at a\\0b, which is no path {AGAIN}")),
+        ("/buffers/0/uri", json!("a%00b"), format!("has a part at a%00b, which is no path {AGAIN}")),
     ]);
 }
 
@@ -170,6 +172,11 @@ fn what_is_not_read_is_told_by_its_name() {
             format!("accessor 0: there is no element 16256: there are 4 {AGAIN}"),
         ),
         ("/asset/version", json!("1.0"), "is glTF 1.0 (Plica reads glTF 2.0: export it again as .glb)".to_owned()),
+        (
+            "/asset/minVersion",
+            json!("2.9"),
+            "needs a reader of glTF 2.9 (Plica reads glTF 2.0: export it again as .glb)".to_owned(),
+        ),
         (
             "/extensionsRequired",
             json!(["KHR_texture_transform", "KHR_draco_mesh_compression"]),
@@ -228,6 +235,11 @@ fn a_file_that_is_cut_short_says_so() {
     let mut old = whole.clone();
     old[4] = 1;
     assert!(read("a.glb", &old).unwrap_err().contains("is a .glb of version 1"));
+    let mut no_text = whole.clone();
+    let at = whole.windows(7).position(|seven| seven == b"by hand").unwrap();
+    no_text[at] = 0xff;
+    let told = format!("a.glb: its JSON is no text from byte {} on: that is not UTF-8 {AGAIN}", at - 20);
+    assert_eq!(read("a.glb", &no_text).unwrap_err(), told);
     let mut odd = whole;
     odd[16] = b'X';
     assert!(read("a.glb", &odd).unwrap_err().contains("does not begin with its JSON"));
