@@ -87,9 +87,10 @@ pub fn overlays_of_fields() -> impl Iterator<Item = &'static Overlay> {
 }
 
 /// Plots the field of `scene`, whose synthesis is `synth`. The plot shows the zones with a little around them, over what they
-/// move.
+/// move; over nothing if that lies on another layer, as the frame does not show it flat.
 pub fn plot(scene: &Scene, synth: &Synth, look: &PlotLook) -> Plot {
-    let shown = shown(synth);
+    let lies = scene.textures().iter().any(|&layer| !synth.layers[layer].fields().is_empty());
+    let shown = if lies { zones(synth) } else { zones(synth).intersect(whole(synth)) };
     let long = shown.width().max(shown.height());
     let scale = (LONG / long).clamp(1.0, 16.0);
     let step = look.step.unwrap_or((long / ARROWS).round().max(1.0) as usize);
@@ -110,7 +111,7 @@ pub fn plot(scene: &Scene, synth: &Synth, look: &PlotLook) -> Plot {
         legend::legend(Point::new(MARGIN, frame.y1 + LEGEND / 2.0), &view, scale, &mut marks);
     }
     let title = format!("Vector field, every {step} px; the longest jump is {longest_px:.2} px");
-    let picture = (!look.no_picture).then(|| (part(synth, shown), frame));
+    let picture = (!look.no_picture && !lies).then(|| (part(synth, shown), frame));
     Plot { width, height, picture, marks, title }
 }
 
@@ -129,7 +130,8 @@ fn view(synth: &Synth, look: &PlotLook, spacing_px: f64) -> View {
     View {
         shown,
         spacing_px,
-        cell_px: (spacing_px / CELLS).max(1.0),
+        // Whole pixels: no gaps between cells.
+        cell_px: (spacing_px / CELLS).round().max(1.0),
         vectors,
         reach,
         of_textures: true,
@@ -142,16 +144,19 @@ fn shown_at(place: InPlots) -> View {
     View { shown: shown.collect(), of_textures: true, ..View::default() }
 }
 
-/// The part of the picture that the plot shows: the zones and a little around them, in whole pixels.
-fn shown(synth: &Synth) -> Rect {
-    let whole = Rect::new(0.0, 0.0, synth.size.0 as f64, synth.size.1 as f64);
+/// The zones and a little around them, in whole pixels; everything if there are none.
+fn zones(synth: &Synth) -> Rect {
     let bounds = fields(synth).map(|field| {
         let (x, y) = (field.corner.0 as f64, field.corner.1 as f64);
         Rect::new(x, y, x + field.inside.width() as f64, y + field.inside.height() as f64)
     });
-    let Some(zones) = bounds.reduce(|a, b| a.union(b)) else { return whole };
+    let Some(zones) = bounds.reduce(|a, b| a.union(b)) else { return whole(synth) };
     let around = (zones.width().max(zones.height()) * 0.08).ceil();
-    zones.inflate(around, around).intersect(whole)
+    zones.inflate(around, around)
+}
+
+fn whole(synth: &Synth) -> Rect {
+    Rect::new(0.0, 0.0, synth.size.0 as f64, synth.size.1 as f64)
 }
 
 fn part(synth: &Synth, shown: Rect) -> Frame {

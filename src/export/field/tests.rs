@@ -4,6 +4,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
 use super::*;
+use crate::layers::parts::marks::Legend;
 use crate::layers::parts::materials::Materials;
 use crate::render;
 
@@ -94,6 +95,23 @@ fn a_plot_shows_what_is_asked_for_and_colors_what_they_are_to_tell() {
     for look in ["", "color=curl", "equal=on"] {
         let (with, without) = (count(&["arrows"], look, false), count(&["arrows"], look, true));
         assert!(with.0 > without.0 && with.2 > without.2, "{look}: {with:?} {without:?}");
+    }
+}
+
+#[test]
+fn cells_of_color_meet_whatever_the_spacing() {
+    let (scene, synth) = scene();
+    let overlays: Vec<_> = overlays_of_fields().filter(|overlay| overlay.legend == Some(Legend::Colors)).collect();
+    for step in [4, 5, 9, 10] {
+        let overlays = overlays.iter().map(|overlay| overlay.name).collect();
+        let look = PlotLook { step: Some(step), overlays, no_legend: true, ..PlotLook::default() };
+        let squares = |mark: &PlotMark| (mark.points.len() == 4 && mark.stroke.is_none()).then(|| mark.points[0].x);
+        let plot = plot(&scene, &synth, &look);
+        let sides: Vec<f64> = plot.marks.iter().filter_map(squares).take(6).collect();
+        let side = sides[1] - sides[0];
+        let cell = plot.marks.iter().find(|mark| squares(mark) == Some(sides[0])).unwrap();
+        assert_eq!(cell.points[1].x - cell.points[0].x, side, "{step}");
+        assert!(sides.windows(2).all(|pair| pair[1] - pair[0] == side), "{step}: {sides:?}");
     }
 }
 
