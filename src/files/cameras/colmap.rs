@@ -13,7 +13,7 @@ use crate::files::disk;
 use crate::layers::parts::shots::Shot;
 
 pub(super) const IMAGES: &str = "images.txt";
-const CAMERAS: &str = "cameras.txt";
+pub(super) const CAMERAS: &str = "cameras.txt";
 /// Where COLMAP writes a model in the folder of a project, and that itself.
 const WITHIN: [&str; 4] = ["", "sparse", "sparse/0", "0"];
 
@@ -138,13 +138,16 @@ fn image<'a>(line: &'a str, known: &HashMap<u64, Camera>) -> std::result::Result
     };
     word();
     let mut numbers = [0.0; 7];
-    for number in &mut numbers {
-        let read = word().parse().ok().filter(|number: &f64| number.is_finite());
-        *number = read.ok_or_else(|| ("expected IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME".into(), ""))?;
+    for (number, name) in numbers.iter_mut().zip(["QW", "QX", "QY", "QZ", "TX", "TY", "TZ"]) {
+        let word = word();
+        let read = word.parse().ok().filter(|number: &f64| number.is_finite());
+        let line = "a line is IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME";
+        *number = read.ok_or_else(|| (format!("{name} is no number: {}", quoted(word)), line))?;
     }
-    let camera = word();
-    let camera = camera.parse().ok().and_then(|id: u64| known.get(&id));
-    let camera = camera.ok_or_else(|| (format!("its camera is not in {CAMERAS}"), ""))?;
+    let id = word();
+    let camera = id.parse().ok().and_then(|id: u64| known.get(&id));
+    let both = "take both files from one model";
+    let camera = camera.ok_or_else(|| (format!("its camera {} is not in {CAMERAS}", quoted(id)), both))?;
     if rest.is_empty() {
         return Err(("a picture has no name".into(), ""));
     }

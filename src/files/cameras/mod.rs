@@ -16,12 +16,12 @@ use serde_json::Value;
 use crate::base::error::{Error, Result};
 use crate::scene::json;
 
-/// Reads a list: `cameras.json`, `transforms.json`, or a text model of COLMAP, as a folder or its `images.txt`.
+/// Reads a list: `cameras.json`, `transforms.json`, or a text model of COLMAP, as a folder or one of its two files.
 ///
 /// # Errors
 /// If it is none of these, is broken, or its cameras are not pinholes.
 pub fn read(path: &Path, reading: &Reading) -> Result<Cameras> {
-    if path.is_dir() || path.file_name().is_some_and(|name| name == colmap::IMAGES) {
+    if path.is_dir() || path.file_name().is_some_and(|name| name == colmap::IMAGES || name == colmap::CAMERAS) {
         return colmap::read(path, reading);
     }
     if path.extension().is_some_and(|end| end == "bin") {

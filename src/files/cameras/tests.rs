@@ -86,7 +86,7 @@ fn one_camera_is_the_same_from_every_list() {
 
     for (line, count) in [("3 PINHOLE 40 20 50 52 20.5 10", 2), ("# a\n3 OPENCV 40 20 50 52 20.5 10 0 0 0 0\n", 2)] {
         let model = colmap(line);
-        for name in ["sparse", "sparse/images.txt"] {
+        for name in ["sparse", "sparse/images.txt", "sparse/cameras.txt"] {
             let found = read_in(&model, name, false).unwrap();
             assert_eq!(found.shots.len(), count);
             assert!(same(&found.shots[0].1, &camera()), "{:?}", found.shots);
@@ -160,10 +160,18 @@ fn what_is_refused_names_its_place_and_the_cure() {
         ("3 OPENCV 40 20 50 52 20 10 0.1 0 0 0", undistort),
         ("3 FISHEYE 40 20 50 20 10 0", undistort),
         ("3 PINHOLE 40 20 50 52 20", "line 1: PINHOLE has 4 parameters, here are 3"),
-        ("4 PINHOLE 40 20 50 52 20 10", "line 2: its camera is not in cameras.txt"),
+        (
+            "4 PINHOLE 40 20 50 52 20 10",
+            "line 2: its camera \"3\" is not in cameras.txt (take both files from one model)",
+        ),
     ] {
         let found = message(&colmap(line), "sparse");
         assert!(found.contains(expected), "{line}: {found}");
+    }
+    for (line, expected) in [("7 1 nan", "line 1: QX is no number: \"nan\""), ("7 1 0 0 0 0", "TY is no number: \"\"")]
+    {
+        let model = folder(&[("images.txt", line), ("cameras.txt", "")]);
+        assert!(message(&model, "").contains(expected), "{}", message(&model, ""));
     }
     let binary = folder(&[("images.bin", "")]);
     for name in ["", "images.bin"] {
@@ -176,7 +184,9 @@ fn what_is_refused_names_its_place_and_the_cure() {
 
     for (change, expected) in [
         (json!({ "k1": 0.1 }), "k1 is not 0: the camera has distortion"),
-        (json!({ "is_fisheye": true }), "a fisheye is no pinhole"),
+        (json!({ "is_fisheye": true }), "the list: is_fisheye: a fisheye is no pinhole"),
+        (json!({ "camera_model": "OPENCV_FISHEYE" }), "camera_model: a fisheye is no pinhole"),
+        (json!({ "fl_x": null, "camera_angle_x": 4 }), "camera_angle_x is not between 0 and pi radians: 4"),
         (json!({ "camera_model": "ORTHOGRAPHIC" }), "an orthographic camera is no pinhole"),
         (json!({ "fl_x": -1 }), "a focal length is not above 0"),
     ] {

@@ -1,6 +1,7 @@
 //! `transforms.json`, as Blender's exporters, NeRF and instant-ngp have it: camera-to-world matrices, x right, y up, z
 //! back.
 
+use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 
 use glam::{DMat3, DVec3};
@@ -85,14 +86,25 @@ fn shot(own: &Item, common: &Item, picture: &Path, reading: &Reading) -> Result<
 /// Focal lengths, of the frame where it has any.
 fn focal(own: &Item, common: &Item, [width, height]: [u32; 2]) -> Result<Xy> {
     for item in [own, common] {
-        let of_angle = |side: u32, angle: f64| 0.5 * f64::from(side) / maths::tan(0.5 * angle);
-        let across = item.number("fl_x")?.or(item.number("camera_angle_x")?.map(|angle| of_angle(width, angle)));
-        let down = item.number("fl_y")?.or(item.number("camera_angle_y")?.map(|angle| of_angle(height, angle)));
+        let across = length(item, ["fl_x", "camera_angle_x"], width)?;
+        let down = length(item, ["fl_y", "camera_angle_y"], height)?;
         if let Some(across) = across.or(down) {
             return Ok([across, down.unwrap_or(across)]);
         }
     }
     Err(own.error("camera_angle_x is missing, and fl_x too"))
+}
+
+/// A focal length in pixels, by itself or by the angle in radians that a side of the picture fills.
+fn length(item: &Item, [length, angle]: [&str; 2], side: u32) -> Result<Option<f64>> {
+    if let Some(length) = item.number(length)? {
+        return Ok(Some(length));
+    }
+    let Some(radians) = item.number(angle)? else { return Ok(None) };
+    match radians > 0.0 && radians < PI {
+        true => Ok(Some(0.5 * f64::from(side) / maths::tan(0.5 * radians))),
+        false => Err(item.error(format!("{angle} is not between 0 and pi radians: {radians}"))),
+    }
 }
 
 /// Refuses cameras that are no pinholes.
@@ -105,12 +117,14 @@ fn refuse_bent(item: &Item) -> Result<()> {
         }
     }
     let model = item.fields.get("camera_model").and_then(Value::as_str).unwrap_or_default().to_ascii_uppercase();
-    let fisheye = item.fields.get("is_fisheye").and_then(Value::as_bool) == Some(true) || model.contains("FISHEYE");
-    let level = model.contains("ORTHO");
-    if fisheye || level {
-        let what = if fisheye { "a fisheye" } else { "an orthographic camera" };
-        let error = Error::at(item.file.display(), format!("{}: {what} is no pinhole", item.called));
-        return Err(error.cure("render or undistort the pictures with a perspective camera"));
-    }
-    Ok(())
+    let is_fisheye = item.fields.get("is_fisheye").and_then(Value::as_bool) == Some(true);
+    let bent = [
+        ("is_fisheye", is_fisheye, "a fisheye"),
+        ("camera_model", model.contains("FISHEYE"), "a fisheye"),
+        ("camera_model", model.contains("ORTHO"), "an orthographic camera"),
+    ];
+    bent.into_iter().find(|(_, is_so, _)| *is_so).map_or(Ok(()), |(field, _, what)| {
+        let error = item.error(format!("{field}: {what} is no pinhole"));
+        Err(error.cure("render or undistort the pictures with a perspective camera"))
+    })
 }

@@ -9,7 +9,7 @@ use super::beside::Beside;
 use super::feather;
 use crate::base::error::Result;
 use crate::base::problem::{nearest, quoted};
-use crate::files::{disk, paths, picture};
+use crate::files::{Limits, disk, paths, picture};
 use crate::layers::parts::shots::{Feeds, SeenFrom};
 use crate::ops::opened::Unloaded;
 use crate::ops::scene_options::{RecoveryOptions, SceneOptions};
@@ -59,11 +59,8 @@ fn place(text: &str) -> std::result::Result<DVec3, String> {
 pub fn run(args: Args, context: &mut Context) -> Result<()> {
     set::refuse_input(&args.scene)?;
     let options = args.reading.options()?;
-    let path = Path::new(&args.image);
-    let file = match picture::size(path, &options.limits) {
-        Ok(_) => Some(Beside::new(path, disk::folder_of(path), &args.scene)?),
-        Err(_) => None,
-    };
+    let path = found(&args.image, &args.scene, &options.limits);
+    let file = path.as_deref().map(|path| Beside::new(path, disk::folder_of(path), &args.scene)).transpose()?;
     let base = base(&args, context)?;
     let make = |document: &Document| {
         let layer = shots::layer(document, args.layer.as_deref())?;
@@ -75,7 +72,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
                 let hint = nearest(&args.image, images.keys().map(String::as_str));
                 let hint = hint.map(|hint| format!(" ({hint})")).unwrap_or_default();
                 return Err(format!(
-                    "there is no image {}{hint}, and no picture in a file of that name",
+                    "there is no image {}{hint}, and no picture in a file of that name here or beside the scene",
                     quoted(&args.image)
                 ));
             }
@@ -84,7 +81,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
         let (name, kind) = (args.name.clone(), args.kind.clone());
         let feather_px = match &image {
             Image::Named(image) => images.get(image).map(|image| paths::beside(&args.scene, &image.path)),
-            Image::File(_) => Some(path.to_owned()),
+            Image::File(_) => path.clone(),
         };
         let feather_px = feather_px.and_then(|path| picture::read(&path, &options.limits).ok());
         let feather_px = feather_px.map_or(0.0, |read| feather::px(&read.picture));
@@ -98,6 +95,12 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     set::apply(&args.scene, (&args.recovery, &args.reading), make, context)
 }
 
+/// Where the file of a picture is: named from here, or as a scene names it.
+fn found(image: &str, scene: &Path, limits: &Limits) -> Option<PathBuf> {
+    let places = [PathBuf::from(image), paths::beside(scene, image)];
+    places.into_iter().find(|path| picture::size(path, limits).is_ok())
+}
+
 /// What keeps the look of the surface, if it gives way to the picture: only then it is drawn.
 fn base(args: &Args, context: &mut Context) -> Result<Base> {
     let unloaded = Unloaded::read(&args.scene, &args.reading, context)?;
@@ -107,5 +110,22 @@ fn base(args: &Args, context: &mut Context) -> Result<Base> {
             Base::new(&opened.document, &opened.synth()?, (layer, 0.0), &args.name)
         }
         _ => Ok(Base::default()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::pixels::Frame;
+    use crate::export::still;
+
+    #[test]
+    fn a_picture_is_found_from_here_and_beside_the_scene() {
+        let folder = tempfile::tempdir().unwrap();
+        let [scene, clay] = ["a.plica.json", "clay.png"].map(|name| folder.path().join(name));
+        std::fs::write(&clay, still::frame(&Frame::from_cells(1, 1, vec![[0; 4]])).unwrap()).unwrap();
+        for (image, there) in [("clay.png", true), (clay.to_str().unwrap(), true), ("mud.png", false)] {
+            assert_eq!(found(image, &scene, &Limits::default()), there.then(|| clay.clone()), "{image}");
+        }
     }
 }

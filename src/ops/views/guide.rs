@@ -54,7 +54,8 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     let technique = opened.document.scene().layers[layer].technique();
     let lying = technique.lying().unwrap_or_default();
     let index = lying.iter().position(|lying| lying.name == args.name).ok_or_else(|| {
-        let hint = nearest(&args.name, lying.iter().map(|lying| lying.name)).unwrap_or_default();
+        let hint = nearest(&args.name, lying.iter().map(|lying| lying.name));
+        let hint = hint.unwrap_or_else(|| "none lies there yet: plica views add lays one".into());
         wrong(format!("there is no view {} ({hint})", quoted(&args.name)))
     })?;
     let drawn = opened.synth()?.layers[layer].guide(index);

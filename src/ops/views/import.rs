@@ -200,12 +200,17 @@ const UPRIGHT: f64 = 0.8;
 
 /// What the cameras mean: how many see the mesh, and whether they stand on their heads.
 fn meaning(shots: &[Shot], corners: &[DVec3], place: &DAffine3, layer: &str) -> Vec<String> {
-    let seeing = shots.iter().filter(|shot| corners.iter().any(|corner| sees(shot, *corner))).count();
+    let sees_it = |shot: &Shot| corners.iter().any(|corner| sees(shot, *corner));
+    let seeing = shots.iter().filter(|shot| sees_it(shot)).count();
     let mut told = vec![format!("{seeing} of {} cameras see the mesh", shots.len())];
     let up: DVec3 = shots.iter().map(|shot| place.transform_vector3(shot.up()).normalize_or_zero()).sum();
     let up = up.normalize_or_zero();
     if seeing == 0 {
-        told.push("none sees it: --axes z-up turns cameras of a world whose z points up".into());
+        let turned = shots.iter().any(|shot| sees_it(&shot.from_z_up()));
+        told.push(match turned {
+            true => "none sees it: --axes z-up turns cameras of a world whose z points up".into(),
+            false => "none sees it, nor would one if z were up in their world: they may be of another mesh".into(),
+        });
     } else if up.z > UPRIGHT {
         told.push(format!(
             "z is up in their world: --axes z-up turns them to a mesh that stands, pose.rotate [-90, 0, 0] of {} both",
@@ -260,6 +265,14 @@ mod tests {
             assert_eq!(found[0], "1 of 1 cameras see the mesh");
             assert_eq!(found.len(), 1 + usize::from(told.is_some()), "{found:?}");
             assert!(told.is_none_or(|told| found[1].contains(told)), "{found:?}");
+        }
+        // From [0, 0, 4] along -z; turned from z up, from [0, 4, 0] down.
+        let past = shot(DVec3::NEG_Y, DVec3::NEG_Z);
+        for (corner, told) in
+            [(DVec3::new(0.0, 0.0, 9.0), "of another mesh"), (DVec3::new(0.0, -20.0, 0.0), "--axes z-up")]
+        {
+            let found = meaning(&[past], &[corner], &DAffine3::IDENTITY, "m");
+            assert!(found[0].starts_with("0 of 1") && found[1].contains(told), "{found:?}");
         }
     }
 }

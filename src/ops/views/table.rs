@@ -55,7 +55,7 @@ pub fn run(args: &Listing, context: &mut Context) -> Result<()> {
         let width = names.map(|name| name.chars().count()).fold(LEAST_WIDTH, usize::max);
         if !args.json {
             context.print(format!("{}{name}", if any { "\n" } else { "" }))?;
-            context.print(format!("{:<width$} {HEAD}", "view"))?;
+            context.print(head(width, args.compare))?;
         }
         any = true;
         for row in &rows {
@@ -84,7 +84,17 @@ fn line(layer: &str, row: &Value) -> String {
 
 /// How wide the names of views are at least.
 const LEAST_WIDTH: usize = 16;
-const HEAD: &str = "kind         depth  pixels  beyond  cells by layer           psnr";
+
+fn head(width: usize, compare: bool) -> String {
+    let psnr = if compare { "psnr" } else { "" };
+    laid_out(["view", "kind", "depth", "pixels", "beyond", "cells by layer", psnr], width)
+}
+
+/// A line of the table.
+fn laid_out([view, kind, depth, pixels, beyond, cells, psnr]: [&str; 7], width: usize) -> String {
+    let line = format!("{view:<width$} {kind:<11} {depth:>6} {pixels:>7} {beyond:>7}  {cells:<24} {psnr}");
+    line.trim_end().to_owned()
+}
 
 /// A row of the table: a view, or the whole map.
 fn words(row: &Value, width: usize) -> String {
@@ -103,17 +113,10 @@ fn words(row: &Value, width: usize) -> String {
         all.sum::<u64>().to_string()
     });
     let told: Vec<String> = told.collect();
-    let beyond = row["beyond"].as_f64().unwrap_or_default() * 100.0;
+    let beyond = format!("{:.0}%", row["beyond"].as_f64().unwrap_or_default() * 100.0);
     let psnr = row.get("psnr").map(|psnr| number(psnr, 1)).unwrap_or_default();
-    let line = format!(
-        "{:<width$} {:<11} {:>6} {:>7} {beyond:>6.0}%  {:<24} {psnr}",
-        text("view"),
-        text("kind"),
-        number(&row["depth"], 2),
-        number(&row["pixels"], 0),
-        told.join(" "),
-    );
-    line.trim_end().to_owned()
+    let (depth, pixels) = (number(&row["depth"], 2), number(&row["pixels"], 0));
+    laid_out([text("view"), text("kind"), &depth, &pixels, &beyond, &told.join(" "), &psnr], width)
 }
 
 /// What is told of views that come back much worse than the others: by their cameras, or as others are seen in their place.
@@ -137,6 +140,18 @@ fn off(rows: &[Value]) -> impl Iterator<Item = String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_heading_stands_over_what_is_told() {
+        let mut row = json!({ "view": "a", "kind": "both", "depth": 1.5, "pixels": 64, "beyond": 0.25,
+            "cells": [{ "both": 7 }, { "both": 30 }] });
+        assert_eq!(head(4, false), "view kind         depth  pixels  beyond  cells by layer");
+        assert_eq!(words(&row, 4), "a    both           1.5      64     25%  7 30");
+        row["psnr"] = json!(38.5);
+        for line in [head(4, true), words(&row, 4)] {
+            assert_eq!(line.find("psnr").or(line.find("38.5")), Some(66), "{line}");
+        }
+    }
 
     #[test]
     fn what_comes_back_badly_is_off_or_covered() {

@@ -24,10 +24,14 @@ pub fn contexts(state: &State) -> Vec<&'static str> {
         (Mode::Normal, Pane::Picture) if state.picture.looking.is_some() => {
             vec![keys::PICKING, keys::PICTURE, keys::MOVING, keys::EVERYWHERE]
         }
-        (Mode::Normal, Pane::Picture) if state.picture.painting.is_some() => {
-            let all = [keys::SELECTING, keys::PAINTING, keys::PICTURE, keys::MOVING, keys::EVERYWHERE];
-            let selects = state.picture.painting.is_some_and(|painting| painting.sees == Sees::Select);
-            all[usize::from(!selects)..].to_vec()
+        (Mode::Normal, Pane::Picture) if let Some(painting) = state.picture.painting => {
+            let own = match painting.sees {
+                Sees::Results => None,
+                Sees::Painting => Some(keys::PAINTED),
+                Sees::Select => Some(keys::SELECTING),
+            };
+            let all = [keys::PAINTING, keys::PICTURE, keys::MOVING, keys::EVERYWHERE];
+            own.into_iter().chain(all).collect()
         }
         (Mode::Normal, Pane::Tree) => vec![keys::TREE, keys::EVERYWHERE],
         (Mode::Normal, Pane::Table) => vec![keys::TABLE, keys::EVERYWHERE],

@@ -104,7 +104,9 @@ fn add(state: &mut State, name: &str, kind: Option<&str>, size: Option<&str>) ->
     let (applied, picture) = paint::begin(scene, &synth, &sight, (name, kind)).map_err(|error| error.to_string())?;
     state.edit(applied.edit, false)?;
     let count = state.document().scene().layers[layer].technique().lying().map_or(0, |lying| lying.len());
-    state.picture.laid = count.checked_sub(1).map(|last| (layer, last));
+    if let Some(last) = count.checked_sub(1) {
+        paint_on(state, layer, last);
+    }
     state.say(plain(&applied.told));
     let picture = std::path::absolute(picture).map_err(|error| error.to_string())?;
     state.ask(Effect::EditImage(picture));
@@ -132,23 +134,38 @@ fn side(text: &str) -> Result<usize, String> {
 /// Selects the view that is so many after the one that is painted on, and so it is painted on; after the last comes the first.
 fn step(state: &mut State, by: i64) -> Done {
     let (layer, index, _) = painting::current(state).ok_or(NONE)?;
-    let technique = state.document().scene().layers[layer].technique();
-    let lying = technique.lying().unwrap_or_default();
+    let lying = state.document().scene().layers[layer].technique().lying().unwrap_or_default();
     let next = (index as i64 + by).rem_euclid(lying.len() as i64) as usize;
-    let list = technique.lay(&[]).map_or("", |laying| laying.list);
-    let (at, name) = (format!("/layers/{layer}{list}/{next}"), plain(lying[next].name));
-    let told = format!("{name}, {} of {}", next + 1, lying.len());
-    state.picture.laid = Some((layer, next));
-    go_to(state, &at);
+    let told = format!("{}, {} of {}", plain(lying[next].name), next + 1, lying.len());
+    select(state, layer, next);
     painting::follow(state);
     state.say(told);
     Ok(())
+}
+
+/// Goes to the row of a view, and so it is painted on.
+fn select(state: &mut State, layer: usize, index: usize) {
+    let list = state.document().scene().layers[layer].technique().lay(&[]).map_or("", |laying| laying.list);
+    let row = format!("/layers/{layer}{list}/{index}");
+    state.picture.laid = Some((layer, index));
+    go_to(state, &row);
+}
+
+/// Makes a view the one that is painted on. The cursor stays, but on the row of another, which would count more.
+fn paint_on(state: &mut State, layer: usize, index: usize) {
+    state.picture.laid = Some((layer, index));
+    if painting::current(state).is_some_and(|(on, row, _)| (on, row) != (layer, index)) {
+        select(state, layer, index);
+    }
 }
 
 /// The view called so, or that of the selected row, or the one that is painted on: its index, and its name.
 fn view(state: &State, layer: usize, name: Option<&str>) -> Result<(usize, String), String> {
     let technique = state.document().scene().layers[layer].technique();
     let lying = technique.lying().unwrap_or_default();
+    if lying.is_empty() {
+        return Err(NONE.into());
+    }
     let list = technique.lay(&[]).map_or("", |laying| laying.list);
     let focused = state.focused();
     let own = Pointer(&focused).item_of(&format!("/layers/{layer}{list}"));
@@ -161,7 +178,6 @@ fn view(state: &State, layer: usize, name: Option<&str>) -> Result<(usize, Strin
         (None, None) => match state.picture.laid.filter(|(on, _)| *on == layer) {
             Some((_, index)) => index,
             None if lying.len() == 1 => 0,
-            None if lying.is_empty() => return Err(NONE.into()),
             None => return Err("which view: name it, or go to its row".into()),
         },
     };
@@ -175,7 +191,7 @@ fn go(state: &mut State, name: Option<&str>) -> Done {
     }
     let layer = layer(state)?;
     let (index, name) = view(state, layer, name)?;
-    state.picture.laid = Some((layer, index));
+    paint_on(state, layer, index);
     let technique = state.document().scene().layers[layer].technique();
     let from = technique.lying().and_then(|lying| lying.get(index)?.from).ok_or("its camera sees nothing")?;
     let place = technique.model_to_world(state.play.time).ok_or("the layer has no model")?;

@@ -17,6 +17,8 @@ pub const PICKABLE: &str = "tree, on sprites";
 pub const PICKING: &str = "picking from a clip";
 /// The picture, in the layout for painting on a mesh.
 pub const PAINTING: &str = "picture, in the layout for painting";
+/// The picture, while what is painted is seen in that layout.
+pub const PAINTED: &str = "picture, in painting";
 /// The picture, while the cameras of views are seen in that layout.
 pub const SELECTING: &str = "picture, in select";
 /// The picture, while a layer with strokes is shown.
@@ -257,19 +259,19 @@ const OWN: &[KeyRow] = &[
     row(PICKING, "z M", "clip cut", "Show what is cut out of the frame, over black, or the frame again"),
     row(PICKING, "z C", "clip sheet", "Show all that is cut out, tracks that hardly move framed, or the frame again"),
     row(PICKING, "Esc", "clip off", "Show the scene again"),
+    row(PAINTED, "z )", "layout more", "More of the picture that is painted on, less of what its camera sees"),
+    row(PAINTED, "z (", "layout less", "Less of it"),
     row(SELECTING, "a", "sphere add", "Add an extreme point of the selected view here, as far away as its camera"),
     row(SELECTING, "r", "sphere move", "Move the selected extreme point here"),
     row(SELECTING, "s", "sphere blend", "Add a blend point here, which looks where the view looks"),
+    row(SELECTING, "Alt-Left", "layout orbit -15 0", "Go round the mesh to the left"),
+    row(SELECTING, "Alt-Right", "layout orbit 15 0", "Go round it to the right"),
+    row(SELECTING, "Alt-Up", "layout orbit 0 15", "Go up"),
+    row(SELECTING, "Alt-Down", "layout orbit 0 -15", "Go down"),
     row(PAINTING, "Tab", "layout next", "From results to the painting, to select, and round"),
     row(PAINTING, "Shift-Tab", "layout previous", "The same the other way"),
     row(PAINTING, "Ctrl-n", "views next", "Paint on the next view"),
     row(PAINTING, "Ctrl-p", "views previous", "Paint on the one before"),
-    row(PAINTING, "z )", "layout more", "More of the picture that is painted on, less of what its camera sees"),
-    row(PAINTING, "z (", "layout less", "Less of it"),
-    row(PAINTING, "Alt-Left", "layout orbit -15 0", "In select, go round the mesh to the left"),
-    row(PAINTING, "Alt-Right", "layout orbit 15 0", "Go round it to the right"),
-    row(PAINTING, "Alt-Up", "layout orbit 0 15", "Go up"),
-    row(PAINTING, "Alt-Down", "layout orbit 0 -15", "Go down"),
     row(PAINTING, "Esc", "layout usual", "Show all panes as usual"),
     row(AIM, "Enter", "place jump", "End the jump vector, or land, at the cursor"),
     row(AIM, "Esc", "cancel", "Keep the old one"),

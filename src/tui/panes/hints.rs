@@ -78,15 +78,15 @@ const HINTS: &[(&str, &[(&str, &str)])] = &[
         ],
     ),
     (
-        keys::PAINTING,
+        keys::PAINTED,
         &[
             ("layout next", "next view"),
             ("layout more", "more of the picture"),
-            ("layout orbit 15 0", "round"),
-            ("probe", "read out"),
+            ("layout less", "less"),
             ("layout usual", "all panes"),
         ],
     ),
+    (keys::PAINTING, &[("layout next", "next view"), ("probe", "read out"), ("layout usual", "all panes")]),
     (keys::AIM, &[("place jump", "take it"), ("cancel", "keep the old one"), ("help", "help")]),
     (
         keys::ENTRY,

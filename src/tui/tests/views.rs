@@ -185,13 +185,21 @@ fn the_view_that_was_selected_last_is_painted_on() {
     state.outside.window = "window".into();
     run(&mut state, "views go a");
     assert_eq!(name(&state), "a");
+    // From the row of another one, too.
+    run(&mut state, "views next");
+    assert_ne!(name(&state), "a");
+    run(&mut state, "views go a");
+    assert_eq!(name(&state), "a");
+    run(&mut state, "views next");
+    run(&mut state, "views add b both 8x6");
+    assert_eq!(name(&state), "b");
 }
 
 #[test]
 fn views_are_gone_through_by_a_key_and_a_far_one_makes_none_small() {
     let folder = tempfile::tempdir().unwrap();
     let mut state = opened(folder.path());
-    for line in ["views next", "views guide", "views take"] {
+    for line in ["views next", "views guide", "views take", "views take x"] {
         assert!(run(&mut state, line).0.contains(":views add NAME lays one"), "{line}: there is none yet");
     }
     run(&mut state, "views add a both 8x6");

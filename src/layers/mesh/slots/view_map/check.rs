@@ -9,6 +9,7 @@ use crate::base::geometry::Xy;
 use crate::base::maths;
 use crate::base::problem::Problem;
 use crate::layers::check as rules;
+use crate::layers::parts::shots::Feeds;
 
 /// How far a matrix may be from a rotation.
 const ROTATION_OFF: f64 = 1e-3;
@@ -35,6 +36,10 @@ fn of_view(view: &View) -> Vec<Problem> {
         let message = "they do not go round the view";
         let problem = Problem::error("/extremes/points", message);
         problems.push(problem.hint("list them in order, on all sides of [0, 0]"));
+    }
+    if view.kind == Feeds::Independent && view.extremes != Extremes::default() {
+        let problem = Problem::warning("/extremes", "an independent view has none: it is seen from everywhere");
+        problems.push(problem.hint("set its kind to both or dependent, or its extremes to auto"));
     }
     problems
 }
@@ -150,6 +155,11 @@ mod tests {
                 json!({ "extremes": { "kind": "points", "points": [[1, 0], [0, 1], [-1, 0]] } }),
                 "/extremes/points",
                 "they do not go round the view",
+            ),
+            (
+                json!({ "kind": "independent", "extremes": { "kind": "cone" } }),
+                "/extremes",
+                "an independent view has none",
             ),
         ] {
             let found = found(view.clone());
