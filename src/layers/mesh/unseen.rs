@@ -8,6 +8,7 @@ use super::model::{MeshLayer, Sides};
 use super::odd;
 use super::pose::Placed;
 use super::synth::Synth;
+use crate::base::maths::atan2;
 use crate::base::mesh::Mesh;
 use crate::base::problem::Problem;
 use crate::layers::parts::moment::Moment;
@@ -43,15 +44,16 @@ impl Why {
             ),
             Why::Within => (
                 "/sides",
-                "the camera is inside it, where only back sides are seen, which are not shown".to_owned(),
+                "the camera is inside it, where back sides are seen, which are not shown".to_owned(),
                 "make sides \"both\", or move the camera out of it, as in the editor :camera fit does",
             ),
         }
     }
 }
 
-/// The warning that nothing of the mesh is in the frame at any of these moments; `None` if something is, if there are none, or
-/// if the mesh is odd in itself, which is told instead.
+/// The warning that nothing of the mesh is in the frame at any of these moments, or that the camera is inside it at all of them
+/// and sees its front sides only by chance; `None` if something is seen, if there are no moments, or if the mesh is odd in itself,
+/// which is told instead.
 pub fn warning(layer: &MeshLayer, mesh: &Mesh, moments: &[Moment]) -> Option<Problem> {
     let bounds = mesh.bounds().filter(|_| odd::warnings(layer, mesh).is_empty())?;
     let nothing = |path: &str, why: &str, cure: &str| {
@@ -75,7 +77,13 @@ pub fn warning(layer: &MeshLayer, mesh: &Mesh, moments: &[Moment]) -> Option<Pro
     let mut why = views.iter().filter_map(Glimpse::of_box).max();
     views.retain(|view| view.of_box().is_none());
     let most = (MOST_TRIANGLES / mesh.triangles.len()).max(2);
-    for view in views.iter().step_by(views.len().div_ceil(most).max(1)) {
+    let all_in_box = why.is_none() && views.iter().all(|view| view.within);
+    let looked_at = || views.iter().step_by(views.len().div_ceil(most).max(1));
+    if !both && all_in_box && !views.is_empty() && looked_at().all(|view| view.is_enclosed(mesh)) {
+        let (path, what, cure) = Why::Within.told();
+        return Some(Problem::warning(path, format!("of the mesh \"{}\": {what}", layer.mesh)).hint(cure));
+    }
+    for view in looked_at() {
         if view.shows(mesh, both) {
             return None;
         }
@@ -162,14 +170,32 @@ impl Glimpse {
         }
     }
 
+    /// Whether a closed mesh encloses the camera, its back sides inward: they fill most of the solid angle around it (Van Oosterom and
+    /// Strackee 1983).
+    fn is_enclosed(&self, mesh: &Mesh) -> bool {
+        let halves =
+            |triangles: &[[u32; 3]]| triangles.iter().map(|triangle| self.half_angle(mesh, triangle)).sum::<f64>();
+        // In order: the sum is the same on any number of threads.
+        let halves: Vec<f64> = mesh.triangles.par_chunks(4096).map(halves).collect();
+        halves.iter().sum::<f64>() > 0.75 * std::f64::consts::TAU
+    }
+
+    /// Half the solid angle of a triangle, positive if its back is seen.
+    fn half_angle(&self, mesh: &Mesh, triangle: &[u32; 3]) -> f64 {
+        let [a, b, c] = triangle.map(|vertex| self.seen(mesh, vertex));
+        let [x, y, z] = [a, b, c].map(DVec3::length);
+        atan2(a.dot(b.cross(c)), x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y)
+    }
+
+    /// A vertex in camera coordinates.
+    fn seen(&self, mesh: &Mesh, vertex: u32) -> DVec3 {
+        self.eye.seen(self.placed.point(mesh.vertices[vertex as usize].position, DVec3::ZERO).0)
+    }
+
     /// Whether a part of a triangle is in the frame; `both` counts those too that face away.
     fn shows(&self, mesh: &Mesh, both: bool) -> bool {
         mesh.triangles.par_iter().any(|triangle| {
-            let seen = |vertex: u32| {
-                let world = self.placed.point(mesh.vertices[vertex as usize].position, DVec3::ZERO).0;
-                self.eye.seen(world)
-            };
-            let [a, b, c] = triangle.map(seen);
+            let [a, b, c] = triangle.map(|vertex| self.seen(mesh, vertex));
             let facing = a.dot(b.cross(c));
             (facing < 0.0 || both && facing > 0.0) && self.holds([a, b, c])
         })
@@ -266,6 +292,25 @@ mod tests {
             assert_eq!(told.is_some(), !parts.is_empty(), "{layer} {camera}: {told:?}");
             assert!(parts.iter().all(|part| told.as_ref().unwrap().contains(part)), "{layer}: {told:?}");
         }
+    }
+
+    #[test]
+    fn a_camera_inside_is_told_though_something_is_seen() {
+        let mut mesh = mesh();
+        let sliver = [[0.1, 0.0, -0.2], [0.0, 0.1, -0.2], [0.0, 0.0, -0.2]];
+        mesh.vertices.extend(sliver.map(|at| Vertex { position: DVec3::from(at), ..Vertex::default() }));
+        mesh.triangles.push([6, 4, 5]);
+        let at = |z: f64| json!({ "position": [0, 0, z], "target": [0, 0, -9] });
+        let inside = told(json!({}), at(0.0), &mesh).unwrap();
+        assert!(inside.contains("sides: warning: of the mesh \"m\": the camera is inside it"), "{inside}");
+        // From outside, with both sides, and where it leaves on its way nothing is wrong.
+        assert_eq!(told(json!({}), at(6.0), &mesh), None);
+        assert_eq!(told(json!({ "sides": "both" }), at(0.0), &mesh), None);
+        let leaves = json!({ "position": [0, 0, 0], "target": [0, 0, -9], "keys": [{ "at": 0 }, { "at": 0.9, "position": [0, 0, 6] }] });
+        assert_eq!(told(json!({}), leaves, &mesh), None);
+        // A room, whose front sides look inward.
+        mesh.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+        assert_eq!(told(json!({}), at(0.0), &mesh), None);
     }
 
     #[test]
