@@ -185,9 +185,14 @@ fn what_was_left_behind_is_offered_in_words() {
     let folder = folder();
     let first = run(folder.path(), &[], "set layers.face.zones.eye.speed=2\n");
     assert!(text(&first.stderr).contains("not saved"), "{}", text(&first.stderr));
-    let second = run(folder.path(), &[], "recover\nw\n");
+    let second = run(folder.path(), &[], "keep\nw\n");
     let told = text(&second.stderr);
     assert!(told.contains("1 unsaved change was left behind") && told.contains("eye · speed 1 → 2"), "{told}");
+    assert!(saved(folder.path()).contains("\"speed\": 2"));
+    run(folder.path(), &[], "set layers.face.zones.eye.speed=5\n");
+    let answered = run(folder.path(), &["--after-recovery", "drop"], "w\n");
+    let told = text(&answered.stderr);
+    assert!(answered.status.success() && !told.contains("left behind"), "answered before: {told}");
     assert!(saved(folder.path()).contains("\"speed\": 2"));
 }
 

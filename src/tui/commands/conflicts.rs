@@ -1,7 +1,6 @@
 //! Conflicts about a scene: unsaved edits that a session left behind, somebody else who is editing the scene, another program
 //! that has changed its file.
 
-use crate::tui::document::choice::About;
 use crate::tui::state::outside::{about_recovery, few, question};
 use crate::tui::text::plain;
 use std::path::PathBuf;
@@ -10,7 +9,7 @@ use super::command::{Call, Command, Done, command};
 use crate::base::error::Error;
 use crate::files::session::Taken;
 use crate::scene::merge::Side;
-use crate::tui::document::choice::Choice;
+use crate::tui::document::choice::{About, Choice, Then};
 use crate::tui::events::Effect;
 use crate::tui::state::{Mode, Pages, State};
 
@@ -32,8 +31,8 @@ pub fn answer(state: &mut State, about: About, word: &str, asked: Choice) -> Don
             _ => {}
         },
         About::Recovery => match word {
-            "recover" => return recover(state, true),
-            "leave" => return recover(state, false),
+            "keep" => return recover(state, true),
+            "drop" => return recover(state, false),
             "difference" => {
                 let lines = state.scene.offered().map(|offer| offer.words.clone()).unwrap_or_default();
                 look(state, lines, asked);
@@ -55,6 +54,11 @@ pub fn answer(state: &mut State, about: About, word: &str, asked: Choice) -> Don
 
 /// Takes the unsaved edits that are offered, or leaves them to undo.
 fn recover(state: &mut State, take: bool) -> Done {
+    // Also where it is answered by a command or an option, the question is over.
+    let asks = matches!(&state.typing.mode, Mode::Choice(Choice { then: Then::Answer(asked), .. }) if asked.about == About::Recovery);
+    if asks {
+        state.typing.mode = Mode::Normal;
+    }
     let change = state.scene.recover(take);
     change.into_iter().for_each(|change| state.changed(change));
     if take { take_in(state, None) } else { Ok(()) }

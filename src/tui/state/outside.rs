@@ -107,8 +107,8 @@ pub fn about_recovery(scene: &OpenScene) -> Option<Choice> {
         text.push("Another program has changed the file since then.".into());
     }
     let options = [
-        ("recover", "Take the changes"),
-        ("leave", "Leave the file as it is; u still brings the changes back"),
+        ("keep", "Take the changes"),
+        ("drop", "Leave the file as it is; u still brings the changes back"),
         ("difference", "Look at all of them"),
     ];
     Some(question(About::Recovery, title, text, &options))

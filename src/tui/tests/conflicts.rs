@@ -79,7 +79,7 @@ pub fn unsaved_edits_that_were_left_behind_are_told_in_words_and_offered() {
         drop(state);
         let mut state = place.open();
         let (words, text) = asked(&state).unwrap();
-        assert_eq!(words, ["recover", "leave", "difference"]);
+        assert_eq!(words, ["keep", "drop", "difference"]);
         assert!(text.contains("left eye · speed 1 → 3"), "{text}");
         press(&mut state, "j j Enter");
         assert!(matches!(&state.typing.mode, Mode::Pages(pages) if pages.lines[0].contains("speed")));
