@@ -9,7 +9,7 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use notify::event::{AccessKind, AccessMode, EventKind};
+use notify::event::{AccessKind, AccessMode, CreateKind, EventKind, ModifyKind};
 use notify::{RecommendedWatcher, RecursiveMode, Watcher};
 
 use super::disk::folder_of;
@@ -19,6 +19,8 @@ use crate::base::error::{Error, Result};
 const QUIET: Duration = Duration::from_millis(100);
 /// A file that is written without a pause is reported this long after its first change.
 const PATIENCE: Duration = Duration::from_secs(1);
+/// So is one that its writer has still open, which may pause: it may have emptied it and be working on what comes.
+const WRITER: Duration = Duration::from_secs(3);
 
 /// Files being watched. Whether a change is somebody else's shows in the file's hash: see
 /// [`super::session::Session::take_in`].
@@ -83,33 +85,58 @@ fn places(file: &Path) -> Vec<PathBuf> {
 
 fn debounce(events: &Receiver<notify::Result<notify::Event>>, files: &Mutex<Files>, changed: impl Fn(Vec<PathBuf>)) {
     while let Ok(event) = events.recv() {
-        let mut touched = concerned(event, &lock(files));
+        let mut touched = Touched::default();
+        touched.take(event, &lock(files));
         let first = Instant::now();
-        while !touched.is_empty() && first.elapsed() < PATIENCE {
+        while !touched.files.is_empty() && first.elapsed() < touched.patience() {
             match events.recv_timeout(QUIET) {
-                Ok(event) => touched.extend(concerned(event, &lock(files))),
-                Err(RecvTimeoutError::Timeout) => break,
+                Ok(event) => touched.take(event, &lock(files)),
+                Err(RecvTimeoutError::Timeout) if touched.open.is_empty() => break,
+                Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => return,
             }
         }
-        if !touched.is_empty() {
-            changed(touched.into_iter().collect());
+        if !touched.files.is_empty() {
+            changed(touched.files.into_iter().collect());
         }
     }
 }
 
-/// The watched files that an event is about; all of them if the system lost events.
-fn concerned(event: notify::Result<notify::Event>, files: &Files) -> BTreeSet<PathBuf> {
-    let Ok(event) = event else { return BTreeSet::new() };
-    if event.need_rescan() {
-        return files.values().cloned().collect();
+/// Watched files that have changed.
+#[derive(Debug, Default)]
+struct Touched {
+    files: BTreeSet<PathBuf>,
+    /// Those that somebody is still writing.
+    open: BTreeSet<PathBuf>,
+}
+
+impl Touched {
+    /// Takes in what an event tells; all files if the system lost events.
+    fn take(&mut self, event: notify::Result<notify::Event>, files: &Files) {
+        let Ok(event) = event else { return };
+        if event.need_rescan() {
+            self.files.extend(files.values().cloned());
+            return;
+        }
+        let writes = match event.kind {
+            EventKind::Access(AccessKind::Close(AccessMode::Write)) => false,
+            EventKind::Access(_) => return,
+            // Only Linux tells when a file is closed.
+            EventKind::Create(CreateKind::File) | EventKind::Modify(ModifyKind::Data(_)) => cfg!(target_os = "linux"),
+            _ => false,
+        };
+        for file in event.paths.iter().filter_map(|path| files.get(path)) {
+            self.files.insert(file.clone());
+            match writes {
+                true => self.open.insert(file.clone()),
+                false => self.open.remove(file),
+            };
+        }
     }
-    match event.kind {
-        EventKind::Access(AccessKind::Close(AccessMode::Write)) => {}
-        EventKind::Access(_) => return BTreeSet::new(),
-        _ => {}
+
+    fn patience(&self) -> Duration {
+        if self.open.is_empty() { PATIENCE } else { WRITER }
     }
-    event.paths.iter().filter_map(|path| files.get(path).cloned()).collect()
 }
 
 fn lock(files: &Mutex<Files>) -> MutexGuard<'_, Files> {
@@ -127,6 +154,33 @@ mod tests {
 
     /// Long enough on any machine; a reported change ends the wait.
     const LONG: Duration = Duration::from_secs(60);
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn a_file_is_waited_for_until_it_is_closed() {
+        use notify::event::{DataChange, MetadataKind, RemoveKind, RenameMode};
+        let closed = EventKind::Access(AccessKind::Close(AccessMode::Write));
+        let written = EventKind::Modify(ModifyKind::Data(DataChange::Any));
+        let made = EventKind::Create(CreateKind::File);
+        for (kinds, touched, open) in [
+            (&[made][..], 1, 1),
+            (&[made, written, closed], 1, 0),
+            (&[written], 1, 1),
+            (&[written, closed, written], 1, 1),
+            (&[EventKind::Modify(ModifyKind::Name(RenameMode::To))], 1, 0),
+            (&[written, EventKind::Remove(RemoveKind::File)], 1, 0),
+            (&[EventKind::Modify(ModifyKind::Metadata(MetadataKind::Any))], 1, 0),
+            (&[EventKind::Access(AccessKind::Read)], 0, 0),
+        ] {
+            let files = Files::from([("/a".into(), "a".into())]);
+            let mut all = Touched::default();
+            for path in ["/a", "/b"] {
+                let event = |kind: &EventKind| notify::Event::new(*kind).add_path(path.into());
+                kinds.iter().map(event).for_each(|event| all.take(Ok(event), &files));
+            }
+            assert_eq!((all.files.len(), all.open.len()), (touched, open), "{kinds:?}");
+        }
+    }
 
     #[test]
     fn changes_of_every_kind_are_told() {
