@@ -12,7 +12,7 @@ pub fn vectorised<R>(work: impl FnOnce() -> R) -> R {
 /// a b + c, rounded once: one instruction within [`vectorised`], a call elsewhere, with the same bits.
 #[expect(
     clippy::disallowed_methods,
-    reason = "the door to it: its bits are the same everywhere, but it is slow without vectors"
+    reason = "the only use of it: the bits are the same everywhere, but the call is slow outside of `vectorised`"
 )]
 #[inline(always)]
 pub fn fused(a: f32, b: f32, c: f32) -> f32 {

@@ -17,9 +17,9 @@ use crate::base::error::{Error, Result};
 
 /// A change is reported after nothing more has come for this long.
 const QUIET: Duration = Duration::from_millis(100);
-/// A file that is written without a pause is reported this long after its first change.
+/// A file that keeps changing is reported this long after its first change.
 const PATIENCE: Duration = Duration::from_secs(1);
-/// So is one that its writer has still open, which may pause: it may have emptied it and be working on what comes.
+/// The same for a file that its writer still has open: the writer may have emptied it first, and pause before it writes.
 const WRITER: Duration = Duration::from_secs(3);
 
 /// Files being watched. Whether a change is somebody else's shows in the file's hash: see
@@ -106,12 +106,12 @@ fn debounce(events: &Receiver<notify::Result<notify::Event>>, files: &Mutex<File
 #[derive(Debug, Default)]
 struct Touched {
     files: BTreeSet<PathBuf>,
-    /// Those that somebody is still writing.
+    /// Those that somebody still has open for writing.
     open: BTreeSet<PathBuf>,
 }
 
 impl Touched {
-    /// Takes in what an event tells; all files if the system lost events.
+    /// Takes in what an event tells: all files have changed if the system lost events.
     fn take(&mut self, event: notify::Result<notify::Event>, files: &Files) {
         let Ok(event) = event else { return };
         if event.need_rescan() {

@@ -31,7 +31,7 @@ pub fn open_anywhere(path: &Path) -> io::Result<OwnedFd> {
     Ok(rustix::fs::open(path, FILE, Mode::empty())?)
 }
 
-/// Whether something could not be opened as its links lead round and round.
+/// Whether something could not be opened because its links form a loop.
 pub fn is_loop(error: &io::Error) -> bool {
     Errno::from_io_error(error) == Some(Errno::LOOP)
 }

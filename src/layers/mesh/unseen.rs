@@ -52,7 +52,7 @@ impl Why {
 }
 
 /// The warning that nothing of the mesh is in the frame at any of these moments, or that the camera is inside it at all of them
-/// and sees its front sides only by chance; `None` if something is seen, if there are no moments, or if the mesh is odd in itself,
+/// though it may see some front sides; `None` if something is seen, if there are no moments, or if the mesh is odd in itself,
 /// which is told instead.
 pub fn warning(layer: &MeshLayer, mesh: &Mesh, moments: &[Moment]) -> Option<Problem> {
     let bounds = mesh.bounds().filter(|_| odd::warnings(layer, mesh).is_empty())?;
