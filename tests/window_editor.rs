@@ -7,6 +7,8 @@ mod display;
 use std::sync::mpsc::{Receiver, channel};
 
 use display::{Display, Place, View, corner};
+use plica::base::pixels::Frame;
+use plica::export::still;
 use plica::files::{Options, scene};
 use plica::preview::Transport;
 use plica::preview::editor::{Event, Preview};
@@ -149,4 +151,31 @@ fn a_picture_that_the_gpu_cannot_hold_is_reduced_and_said_so() {
         let differ = places.filter(|&(x, y)| far(*shot.get(left + x, top + y), *frame.get(x, y))).count();
         differ * 20 < frame.cells().len()
     });
+}
+
+#[test]
+fn a_large_picture_is_as_fine_as_it_is_seen() {
+    let Some(display) = Display::open() else { return };
+    let place = Place::new();
+    // Black and white columns: from afar they are gray.
+    let columns = |i: usize| [[0, 0, 0, 255], [255; 4]][i % 2];
+    let large = Frame::from_cells(4200, 4100, (0..4200 * 4100).map(columns).collect());
+    std::fs::write(place.folder.path().join("eye.png"), still::frame(&large).unwrap()).unwrap();
+    let scene = r#"{"plica": 1, "images": {"a": {"path": "eye.png"}},
+        "layers": [{"kind": "picture", "name": "a", "image": "a"}]}"#;
+    std::fs::write(&place.scene, scene).unwrap();
+    let mut view = View::open(&display, &place);
+    let middle = |view: &View| {
+        let shot = view.shot();
+        let (y, half) = (shot.height() / 2, shot.width() / 2);
+        shot.row(y).iter().skip(half.saturating_sub(20)).take(40).map(|color| color[0]).collect::<Vec<u8>>()
+    };
+    let is_gray = |codes: &[u8]| codes.len() == 40 && codes.iter().all(|code| (160..220).contains(code));
+    let is_fine =
+        |codes: &[u8]| codes.len() == 40 && codes.chunks(2).all(|codes| codes.contains(&0) && codes.contains(&255));
+    view.until("all of the picture", |view| is_gray(&middle(view)));
+    view.keys(&["1"]);
+    view.until("each of its pixels", |view| is_fine(&middle(view)));
+    view.keys(&["f"]);
+    view.until("all of the picture again", |view| is_gray(&middle(view)));
 }

@@ -48,20 +48,25 @@ impl Reduced {
 /// The mean of every block of `by` x `by` pixels; blocks at the right and bottom edges may be smaller.
 pub fn means(picture: &Picture, by: usize) -> Picture {
     let (width, height) = (picture.width().div_ceil(by), picture.height().div_ceil(by));
-    let block = |i: usize| {
-        let (x, y) = (i % width * by, i / width * by);
-        let (x1, y1) = ((x + by).min(picture.width()), (y + by).min(picture.height()));
-        let mut sum: Rgba = [0.0; 4];
-        let mut colors = vec![[0.0; 4]; x1 - x];
-        for row in y..y1 {
-            picture.row(x, row, &mut colors);
-            for color in &colors {
-                sum = std::array::from_fn(|c| sum[c] + color[c]);
+    let mut means: Vec<Rgba> = vec![[0.0; 4]; width * height];
+    let lines = means.par_chunks_mut(width.max(1)).enumerate();
+    lines.for_each_init(
+        || vec![[0.0; 4]; picture.width()],
+        |colors, (y, means)| {
+            let rows = y * by..(y * by + by).min(picture.height());
+            let count = rows.len();
+            for row in rows {
+                picture.row(0, row, colors);
+                for (mean, colors) in means.iter_mut().zip(colors.chunks(by)) {
+                    *mean = colors.iter().fold(*mean, |sum, color| std::array::from_fn(|c| sum[c] + color[c]));
+                }
             }
-        }
-        sum.map(|s| s / ((x1 - x) * (y1 - y)) as f32)
-    };
-    Picture::from_cells(width, height, (0..width * height).map(block).collect())
+            for (mean, colors) in means.iter_mut().zip(colors.chunks(by)) {
+                *mean = mean.map(|sum| sum / (colors.len() * count) as f32);
+            }
+        },
+    );
+    Picture::from_cells(width, height, means)
 }
 
 #[cfg(test)]

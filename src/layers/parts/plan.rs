@@ -5,6 +5,9 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
+use crate::base::half::half_of_value;
 use crate::base::picture::Picture;
 use crate::base::pixels::Grid;
 
@@ -330,14 +333,21 @@ impl Packed<'static> {
 }
 
 impl Upload for Picture {
-    /// One texture: linear light, premultiplied.
+    /// One texture: linear light, premultiplied, as fine as the frame that it is drawn in.
     fn pack(&self) -> Vec<Packed<'_>> {
         let width = self.width();
         let rows = move |rows: Range<usize>, take: &mut dyn FnMut(&[u8])| {
-            let mut band = vec![[0.0; 4]; rows.len() * width];
-            band.chunks_mut(width.max(1)).zip(rows).for_each(|(out, y)| self.row(0, y, out));
+            let mut band = vec![[0_u16; 4]; rows.len() * width];
+            let lines = band.par_chunks_mut(width.max(1)).zip(rows.into_par_iter());
+            lines.for_each_init(
+                || vec![[0.0; 4]; width],
+                |line, (out, y)| {
+                    self.row(0, y, line);
+                    out.iter_mut().zip(line).for_each(|(out, color)| *out = color.map(half_of_value));
+                },
+            );
             take(bytemuck::cast_slice(&band));
         };
-        vec![Packed { size: (width, self.height()), format: Format::Rgba32Float, rows: Box::new(rows) }]
+        vec![Packed { size: (width, self.height()), format: Format::Rgba16Float, rows: Box::new(rows) }]
     }
 }

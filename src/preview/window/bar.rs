@@ -150,10 +150,11 @@ fn first_that_fits(texts: Vec<String>, room: f64, width: impl Fn(&str) -> f64) -
 /// the window is connected.
 fn said(state: &State) -> (String, Color) {
     let words = &state.words;
+    let work = state.work.filter(|work| work.is_long).map(|work| work.to_string());
     let explained = if !state.has_picture() {
         Some(words.progress.clone().unwrap_or_else(|| state.waits_for()))
-    } else if let Some(work) = state.work.filter(|work| work.is_long) {
-        Some(work.to_string())
+    } else if work.is_some() {
+        work.clone()
     } else if state.drawing && !state.transport.playing {
         Some(format!("drawing {}", state.pass.as_ref().map_or("the frame".into(), |pass| format!("the pass {pass}"))))
     } else if let Some(why) = &state.no_pass {
@@ -173,7 +174,7 @@ fn said(state: &State) -> (String, Color) {
         None
     };
     match (words.in_one_line().filter(|_| words.listed().is_empty()), explained) {
-        (Some(problem), _) => (problem, WARNING),
+        (Some(problem), _) => ([Some(problem), work].into_iter().flatten().collect::<Vec<_>>().join("   "), WARNING),
         (None, Some(explained)) => (explained, TEXT),
         (None, None) => {
             let followed = words.progress.as_deref().or(words.notice.as_deref());
@@ -339,6 +340,8 @@ mod tests {
         assert!(said(&state).0.contains("frame 59 against 0"));
         state.words.reduced = Some("shown reduced".into());
         assert_eq!(said(&state), ("shown reduced".into(), WARNING));
+        let work = Some(Work { what: "sending", is_long: true, percent: Some(34) });
+        assert_eq!(said(&State { work, ..state.clone() }), ("shown reduced   sending: 34 %".into(), WARNING));
         state.words.follow_scene(vec![Problem::error("/images", "no picture")]);
         assert_eq!(said(&state).1, TEXT, "problems stand in a list of their own");
         state.words.put_away();

@@ -15,6 +15,7 @@ impl App {
     /// Draws the window, if it can be seen. A lost device is replaced, and another drawing requested.
     pub(super) fn draw(&mut self) -> Result<()> {
         self.advance();
+        self.follow_zoom();
         let Some(opened) = &mut self.opened else { return Ok(()) };
         let was_hidden = opened.hidden;
         if opened.is_seen() {

@@ -7,6 +7,7 @@ use kurbo::{Point, Size};
 use winit::event_loop::ActiveEventLoop;
 
 use super::app::App;
+use super::frames::{Frames, enough, held};
 use super::show::{Show, name};
 use super::state::State;
 use super::words::Words;
@@ -16,7 +17,7 @@ use crate::base::problem::Problem;
 use crate::preview::Transport;
 use crate::preview::follow::Update;
 use crate::preview::wire::message::{FromEditor, ToEditor};
-use crate::render::passes;
+use crate::render::{Synth, passes};
 
 /// How long to wait for a scene before the window opens with a notice alone.
 const PATIENCE: Duration = Duration::from_millis(500);
@@ -39,33 +40,82 @@ impl App {
 
     /// Sends the latest scene to the GPU, one at a time.
     pub(super) fn send_next(&mut self) {
-        let Some(opened) = self.opened.as_mut().filter(|_| self.sending.is_none()) else { return };
+        if self.opened.is_none() || self.sending.is_some() {
+            return;
+        }
         let Some(ready) = self.waiting.take() else { return };
-        let most = opened.gpu.device().max_side().min(self.options.most);
+        let is_seen = |show: &&Show| show.synth.size == ready.synth.size;
+        let zoom = self.shown.as_ref().filter(is_seen).map(|_| self.state.viewport.zoom);
+        let by = self.held(&ready.synth).max(enough(ready.synth.size, zoom));
+        self.send((ready.synth.clone(), by), Some(ready));
+    }
+
+    /// Sends what is shown again, larger or smaller, where more or less of its pixels are seen than before.
+    pub(super) fn follow_zoom(&mut self) {
+        let Some(show) = &self.shown else { return };
+        let ((width, height), by) = (show.synth.size, show.frames.by);
+        let enough = enough(show.synth.size, Some(self.state.viewport.zoom));
+        let wanted = self.held(&show.synth).max(enough).max(show.coarsest);
+        let reduced = (by > enough).then(|| format!("{width} x {height} is shown reduced {by} times"));
+        self.sending.iter().filter(|sending| sending.again.is_some_and(|by| by != wanted)).for_each(Sending::give_up);
+        let sent = (wanted != by && self.sending.is_none() && self.waiting.is_none()).then(|| show.synth.clone());
+        if self.state.words.reduced != reduced {
+            self.state.words.reduced = reduced;
+            self.report();
+        }
+        if let Some(synth) = sent {
+            self.send((synth, wanted), None);
+        }
+    }
+
+    /// How many times smaller the GPU of the window needs a scene.
+    fn held(&self, synth: &Synth) -> usize {
+        let most = self.opened.as_ref().map_or(usize::MAX, |opened| opened.gpu.device().max_side());
+        held(synth, most.min(self.options.most))
+    }
+
+    fn send(&mut self, frames: (Synth, usize), ready: Option<Ready>) {
+        let Some(opened) = &mut self.opened else { return };
         let proxy = self.proxy.clone();
         let send = move |event| proxy.send_event(event).is_ok();
-        self.sending = Some(Sending::start(opened.gpu.uploader(), ready, most, send));
+        self.sending = Some(Sending::start(opened.gpu.uploader(), frames, ready, send));
     }
 
     /// Takes a scene whose pictures are on the GPU.
     pub(super) fn sent(&mut self, event_loop: &ActiveEventLoop, Sent { ready, made, lost }: Sent) -> Result<()> {
-        self.sending = None;
+        let given_up = self.sending.take().is_some_and(|sending| sending.is_given_up());
         let Some(opened) = &mut self.opened else { return Ok(()) };
-        match made {
-            Ok((show, reduced, uploaded)) => {
+        match (made, ready) {
+            (Ok((frames, uploaded)), ready) => {
                 opened.gpu.take(uploaded);
-                self.show(event_loop, ready, show, reduced);
+                self.state.work = None;
+                match (ready, &mut self.shown) {
+                    (Some(ready), _) => self.show(event_loop, ready, frames),
+                    (None, Some(show)) => show.frames = frames,
+                    (None, None) => {}
+                }
+                self.marks.revision += 1;
+                self.redraw();
             }
             // It is sent again to the device that takes its place: at once, or by the drawing that opens it.
-            Err(_) if lost => {
+            (Err(_), ready) if lost => {
                 let still = opened.gpu.device().is_lost();
-                self.waiting.get_or_insert(ready);
+                self.waiting = self.waiting.take().or(ready);
                 self.redraw();
                 if still {
                     return Ok(());
                 }
             }
-            Err(error) => return Err(error),
+            (Err(error), Some(_)) => return Err(error),
+            // It stays as it is seen.
+            (Err(error), None) => {
+                self.state.work = None;
+                if !given_up {
+                    self.state.words.told = Some(error.to_string());
+                    self.shown.iter_mut().for_each(|show| show.coarsest = show.frames.by);
+                }
+                self.redraw();
+            }
         }
         self.send_next();
         Ok(())
@@ -79,22 +129,20 @@ impl App {
         self.state.passes = passes::shown(&ready.scene);
     }
 
-    fn show(&mut self, event_loop: &ActiveEventLoop, ready: Ready, show: Show, reduced: Option<String>) {
-        self.state.work = None;
+    fn show(&mut self, event_loop: &ActiveEventLoop, ready: Ready, frames: Frames) {
         self.hurry.changed(Instant::now());
         self.load(&ready);
         self.come_back();
         // A window that opened without a picture stays as it is until there is one.
         self.grows_to = self.shown.is_none().then(|| self.first_size(event_loop));
-        self.shown = Some(show);
-        self.state.words.reduced = reduced;
+        let Ready { document, scene, synth, marks, .. } = ready;
+        self.shown = Some(Show { document, scene, synth, frames, coarsest: 1, marks });
         self.state.otherwise = ready.otherwise;
         // One looks round the cameras from elsewhere than at the result.
         if std::mem::replace(&mut self.state.selects, ready.selects) != ready.selects {
             self.state.look_from(None);
         }
         self.state.words.follow_scene(ready.problems);
-        self.marks.revision += 1;
         self.owed = Some(ToEditor::Ack { revision: ready.revision, synth_ms: ready.synth_ms });
         self.select(self.state.selection.clone());
         self.report();

@@ -23,6 +23,7 @@ mod clock;
 mod draw;
 mod events;
 mod follow;
+mod frames;
 mod glyphs;
 mod grasp;
 mod hurry;

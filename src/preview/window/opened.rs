@@ -237,11 +237,11 @@ impl OpenWindow {
         let time = state.transport.scene_time(&state.timeline);
         let last = state.timeline.time_of(state.timeline.frames() - 1);
         let (frame, other) = if state.shows("view-seam") {
-            ((&show.frames, last), Some((&show.frames, 0.0)))
+            ((&show.frames.moving, last), Some((&show.frames.moving, 0.0)))
         } else if state.shows("view-wipe") {
-            ((&show.frames, time), Some((&show.still, 0.0)))
+            ((&show.frames.moving, time), Some((&show.frames.still, 0.0)))
         } else {
-            ((if state.shows("view-still") { &show.still } else { &show.frames }, time), None)
+            ((if state.shows("view-still") { &show.frames.still } else { &show.frames.moving }, time), None)
         };
         let own = state.own_camera();
         let frame = (&*seen(frame.0, own.as_ref()), frame.1);
@@ -251,8 +251,8 @@ impl OpenWindow {
         state.named_colors = asked.iter().flatten().flat_map(|asked| asked.colors(&show.scene)).collect();
         // Passes are drawn by the CPU, and so are sprites, strokes and view maps where the CPU would only pretend to be a GPU: that
         // takes several times as long.
-        let much = show.has_sprites() || show.frames.takes_long();
-        let by_cpu = self.gpu.by_cpu(&show.frames).is_some() || much && self.gpu.device().is_software();
+        let much = show.has_sprites() || show.synth.takes_long();
+        let by_cpu = self.gpu.by_cpu(&show.frames.moving).is_some() || much && self.gpu.device().is_software();
         let asked = asked.ok().flatten().or_else(|| by_cpu.then_some(Asked::FRAME));
         let was_by_cpu = std::mem::take(&mut self.by_cpu);
         state.drawing = false;
@@ -266,12 +266,14 @@ impl OpenWindow {
             // Until a pass is there, the frame that was shown stays.
             self.by_cpu = by_cpu || was_by_cpu || !state.drawing;
             if self.by_cpu {
-                let scale = show.frame_scale / self.passes.each.max(1) as f64;
+                let scale = show.frames.scale() / self.passes.each.max(1) as f64;
                 return textures.map_or_else(|| self.nothing(), |(frame, other)| Ok(Pictures { frame, other, scale }));
             }
         }
-        let (frame, other) = self.gpu.textures(frame, other.as_ref().map(|(synth, t)| (&**synth, *t)))?;
-        Ok(Pictures { frame, other, scale: show.frame_scale })
+        let scale = show.frames.scale();
+        let seen = state.viewport.seen(state.window, frame.0.size, scale);
+        let (frame, other) = self.gpu.textures(frame, other.as_ref().map(|(synth, t)| (&**synth, *t)), seen)?;
+        Ok(Pictures { frame, other, scale })
     }
 
     /// Fills the screen, or goes back to a window.

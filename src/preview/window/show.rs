@@ -7,6 +7,7 @@ use std::sync::Arc;
 use kurbo::{Point, Size};
 
 use super::canvas::Canvas;
+use super::frames::Frames;
 use super::own_view::OwnView;
 use super::state::State;
 use super::text::Letters;
@@ -19,7 +20,6 @@ use crate::layers::space::camera::Camera;
 use crate::render::Synth;
 use crate::render::overlay::{aimed, overlay, overlays, reach};
 use crate::render::passes::Asked;
-use crate::render::reduce::reduced;
 use crate::scene::grips::{Grip, grips};
 use crate::scene::{Document, Scene, words::item_of};
 
@@ -30,31 +30,18 @@ pub struct Show {
     pub scene: Arc<Scene>,
     /// As large as the picture: for the overlay.
     pub synth: Synth,
-    /// As large as the GPU can hold, moving and still.
-    pub frames: Synth,
-    pub still: Synth,
-    /// Pixels of the frames a pixel of the picture.
-    pub frame_scale: f64,
+    /// As large as it is drawn.
+    pub frames: Frames,
+    /// How many times smaller it is to stay, as there was no room for more.
+    pub coarsest: usize,
     /// Marks beside those of the overlays.
     pub marks: Vec<Mark>,
 }
 
 impl Show {
-    /// A scene on a GPU that holds pictures of at most `most` pixels a side; with it, what is to be said about that.
-    pub fn new(document: Document, scene: Arc<Scene>, synth: Synth, most: usize) -> (Show, Option<String>) {
-        let (width, height) = synth.size;
-        let read = synth.layers.iter().map(|layer| layer.largest_texture());
-        let largest = read.chain([width, height]).max().unwrap_or(1);
-        let factor = largest.div_ceil(most.max(1)).max(1);
-        let frames = if factor > 1 { reduced(&synth, factor) } else { synth.clone() };
-        let said = (factor > 1).then(|| format!("{width} x {height} is shown reduced {factor} times"));
-        let (still, frame_scale) = (frames.unmoved(), 1.0 / factor as f64);
-        (Show { document, scene, still, synth, frames, frame_scale, marks: Vec::new() }, said)
-    }
-
     /// Whether any layer has sprites, of which some can be left out.
     pub fn has_sprites(&self) -> bool {
-        self.frames.layers.iter().any(|layer| layer.has_sprites())
+        self.synth.layers.iter().any(|layer| layer.has_sprites())
     }
 }
 

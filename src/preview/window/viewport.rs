@@ -54,6 +54,23 @@ impl Viewport {
         ((at.to_vec2() - self.origin(area)) / self.zoom).to_point()
     }
 
+    /// The pixels of a frame that a window shows, `scale` of them a pixel of the picture: left, top, width, height.
+    pub fn seen(&self, window: Size, frame: (usize, usize), scale: f64) -> [u32; 4] {
+        // One of the screen is the mean of those around it.
+        let around = scale / self.zoom + 1.0;
+        let origin = self.origin(window);
+        let range = |origin: f64, window: f64, frame: usize| {
+            let at = |place: f64| (place - origin) / self.zoom * scale;
+            let most = (frame as f64 - 1.0).max(0.0);
+            let first = (at(0.0) - around).floor().clamp(0.0, most);
+            let last = (at(window) + around).ceil().clamp(first + 1.0, most + 1.0);
+            [first as u32, (last - first) as u32]
+        };
+        let ([left, width], [top, height]) =
+            (range(origin.x, window.width, frame.0), range(origin.y, window.height, frame.1));
+        [left, top, width, height]
+    }
+
     /// Fits a picture into the area.
     pub fn fit(&mut self, picture: Size, area: Size, fit: Fit) {
         let zoom = (area.width / picture.width.max(1.0)).min(area.height / picture.height.max(1.0));
@@ -136,6 +153,21 @@ mod tests {
 
     const AREA: Size = Size::new(640.0, 400.0);
     const PICTURE: Size = Size::new(300.0, 200.0);
+
+    #[test]
+    fn a_window_shows_a_part_of_a_frame() {
+        for (zoom, center, frame, scale, seen) in [
+            (1.0, (150.0, 100.0), (300, 200), 1.0, [0, 0, 300, 200]),
+            (8.0, (150.0, 100.0), (300, 200), 1.0, [108, 73, 84, 54]),
+            (8.0, (300.0, 200.0), (300, 200), 1.0, [258, 173, 42, 27]),
+            (1.0, (6000.0, 4500.0), (12000, 9000), 1.0, [5678, 4298, 644, 404]),
+            (1.0, (6000.0, 4500.0), (1500, 1125), 0.125, [708, 536, 84, 53]),
+            (1.0, (90000.0, -90000.0), (300, 200), 1.0, [299, 0, 1, 1]),
+        ] {
+            let viewport = Viewport { zoom, center: center.into(), ..Viewport::default() };
+            assert_eq!(viewport.seen(AREA, frame, scale), seen, "{zoom} {center:?}");
+        }
+    }
 
     #[test]
     fn fitting_fills_the_window_or_keeps_whole_pixels() {

@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use super::show::Show;
+use super::frames::Frames;
 use super::text::Fonts;
 use super::words::Work;
 use crate::base::error::Error;
@@ -87,17 +87,17 @@ pub struct Ready {
 
 /// A scene whose textures are on the GPU.
 pub struct Sent {
-    /// The scene as it was ready.
-    pub ready: Ready,
-    /// The same, reduced to what the GPU can hold, and what is to be said about that; or why that failed.
-    pub made: Result<(Show, Option<String>, Uploaded), Error>,
+    /// The scene as it was ready, unless it is the one that is shown.
+    pub ready: Option<Ready>,
+    /// As large as it is to be drawn; or why that failed.
+    pub made: Result<(Frames, Uploaded), Error>,
     /// Whether the GPU's device was lost meanwhile.
     pub lost: bool,
 }
 
 impl fmt::Debug for Sent {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "Sent({})", self.ready.revision)
+        write!(f, "Sent({:?})", self.ready.as_ref().map(|ready| ready.revision))
     }
 }
 
@@ -105,38 +105,50 @@ impl fmt::Debug for Sent {
 pub struct Sending {
     thread: Option<JoinHandle<()>>,
     stop: Arc<AtomicBool>,
+    /// How many times smaller it is made, if it is the scene that is shown.
+    pub again: Option<usize>,
 }
 
 impl Sending {
-    /// Sends a scene beside the event loop, which goes on drawing the one before. `most`: see [`Show::new`].
+    /// Sends a scene, made so many times smaller, beside the event loop, which goes on drawing what it drew. `ready`: see
+    /// [`Sent`].
     pub fn start(
         uploader: Uploader,
-        ready: Ready,
-        most: usize,
+        (synth, by): (Synth, usize),
+        ready: Option<Ready>,
         send: impl Fn(Event) -> bool + Clone + Send + 'static,
     ) -> Sending {
         let stop = Arc::new(AtomicBool::new(false));
-        let stopped = stop.clone();
+        let (stopped, again) = (stop.clone(), ready.is_none().then_some(by));
         let thread = std::thread::spawn(move || {
             let sent = progress("sending the picture to the GPU", send.clone());
             let make = || {
-                let (show, reduced) = Show::new(ready.document.clone(), ready.scene.clone(), ready.synth.clone(), most);
-                let show = Show { marks: ready.marks.clone(), ..show };
-                let uploaded = uploader.upload(&[&show.frames, &show.still], &sent, &stopped)?;
-                Ok((show, reduced, uploaded))
+                let frames = Frames::new(&synth, by);
+                let uploaded = uploader.upload(&[&frames.moving, &frames.still], &sent, &stopped)?;
+                Ok((frames, uploaded))
             };
             let made = fault::caught(make).unwrap_or_else(|fault| Err(Error::at("window", fault)));
             let lost = uploader.is_lost();
             drop(uploader);
             send(Event::Sent(Box::new(Sent { ready, made, lost })));
         });
-        Sending { thread: Some(thread), stop }
+        Sending { thread: Some(thread), stop, again }
+    }
+
+    /// Ends it soon; that is told as a failure.
+    pub fn give_up(&self) {
+        self.stop.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether it was given up.
+    pub fn is_given_up(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
     }
 }
 
 impl Drop for Sending {
     fn drop(&mut self) {
-        self.stop.store(true, Ordering::Relaxed);
+        self.give_up();
         self.thread.take().into_iter().for_each(|thread| drop(thread.join()));
     }
 }

@@ -4,6 +4,7 @@
 use super::device::Device;
 use super::kept::{KeptTextures, check_size, texture};
 use super::run::{FRAME, Runner};
+use super::target::all;
 use crate::base::error::Result;
 use crate::layers::parts::plan::{Blend, COMMON, Plan, Program, Step};
 use crate::render::Synth;
@@ -30,17 +31,18 @@ pub struct Painter {
 }
 
 impl Painter {
-    /// Draws the frame at a scene time into a texture of the scene's size; there is one texture for each number, 0 or
+    /// Draws a part of the frame at a scene time into a texture of the scene's size; there is one texture for each number, 0 or
     /// 1.
     pub fn frame(
         &mut self,
         device: &Device,
         number: usize,
-        (synth, scene_time): (&Synth, f64),
+        at: (&Synth, f64),
+        part: [u32; 4],
     ) -> Result<wgpu::Texture> {
-        let frame = self.frames[number].get(device, synth.size, FRAME)?;
+        let frame = self.frames[number].get(device, at.0.size, FRAME)?;
         loop {
-            self.draw(device, &frame, (synth, scene_time))?;
+            self.draw(device, &frame, at, part)?;
             if self.runner.had_room(device)? {
                 return Ok(frame);
             }
@@ -48,7 +50,13 @@ impl Painter {
     }
 
     /// Draws the frame once, though there may not be room for all that it is drawn from.
-    fn draw(&mut self, device: &Device, frame: &wgpu::Texture, (synth, scene_time): (&Synth, f64)) -> Result<()> {
+    fn draw(
+        &mut self,
+        device: &Device,
+        frame: &wgpu::Texture,
+        (synth, scene_time): (&Synth, f64),
+        part: [u32; 4],
+    ) -> Result<()> {
         let mut encoder = device.raw.create_command_encoder(&Default::default());
         let moment = synth.moment(scene_time);
         let stage = &synth.stage;
@@ -60,13 +68,13 @@ impl Painter {
             let fine = device.blends_floats() && draws.any(|draw| draw.into.is_none() && draw.instances > 1);
             // Beneath the first layer there is often nothing.
             if i == 0 && stage.background == [0.0; 4] && !fine {
-                self.runner.run(device, &mut encoder, frame, &plans)?;
+                self.runner.run(device, &mut encoder, (frame, part), &plans)?;
                 continue;
             }
             let (target, format) = if fine { (&mut self.fine, FINE) } else { (&mut self.layer, FRAME) };
             let into = target.get(device, synth.size, format)?;
-            self.runner.run(device, &mut encoder, &into, &plans)?;
-            self.runner.lay(device, &mut encoder, (&LAY, Blend::Over), (&into, frame))?;
+            self.runner.run(device, &mut encoder, (&into, part), &plans)?;
+            self.runner.lay(device, &mut encoder, (&LAY, Blend::Over), (&into, frame), part)?;
         }
         device.checked(|| device.queue.submit([encoder.finish()])).map(|_| ())
     }
@@ -86,7 +94,7 @@ impl Painter {
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
         let encoded = texture(device, (frame.width() as usize, frame.height() as usize), ENCODED, usage)?;
         let mut encoder = device.raw.create_command_encoder(&Default::default());
-        self.runner.lay(device, &mut encoder, (&ENCODE, Blend::Replace), (frame, &encoded))?;
+        self.runner.lay(device, &mut encoder, (&ENCODE, Blend::Replace), (frame, &encoded), all(frame))?;
         device.checked(|| device.queue.submit([encoder.finish()]))?;
         Ok(encoded)
     }

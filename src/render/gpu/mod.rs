@@ -109,18 +109,20 @@ impl Gpu {
 
     /// Draws the frame at `scene_time` in [0, 1] into a texture: linear, premultiplied, [`FRAME`].
     pub fn texture(&mut self, synth: &Synth, scene_time: f64) -> Result<wgpu::Texture> {
-        self.textures((synth, scene_time), None).map(|(frame, _)| frame)
+        self.textures((synth, scene_time), None, whole(synth)).map(|(frame, _)| frame)
     }
 
-    /// As [`Gpu::texture`], with a second frame in a separate texture if one is wanted.
+    /// As [`Gpu::texture`], with a second frame in a separate texture if one is wanted. Only `part` of them has to be right:
+    /// left, top, width and height in pixels.
     pub fn textures(
         &mut self,
         first: (&Synth, f64),
         second: Option<(&Synth, f64)>,
+        part: [u32; 4],
     ) -> Result<(wgpu::Texture, Option<wgpu::Texture>)> {
         let Parts { device, painter } = &mut self.parts;
-        let first = painter.frame(device, 0, first)?;
-        let second = second.map(|second| painter.frame(device, 1, second)).transpose()?;
+        let first = painter.frame(device, 0, first, part)?;
+        let second = second.map(|second| painter.frame(device, 1, second, part)).transpose()?;
         painter.end_frame();
         Ok((first, second))
     }
@@ -182,6 +184,11 @@ impl Gpu {
         self.parts.device.take_uncaught()?;
         read
     }
+}
+
+/// All of a frame.
+fn whole(synth: &Synth) -> [u32; 4] {
+    [0, 0, synth.size.0 as u32, synth.size.1 as u32]
 }
 
 /// How samples of a pixel are drawn.

@@ -5,7 +5,7 @@ use std::mem::offset_of;
 use super::device::{Device, failed, readable};
 use super::kept::{KeptTextures, Texture, check_size, texture};
 use super::pipeline::{Bound, DEPTH, Pipelines, Way};
-use super::target::{Scratches, Spare, Target};
+use super::target::{Scratches, Spare, Target, all};
 use crate::base::error::Result;
 use crate::base::pixels::Rgba;
 use crate::layers::parts::plan::{Bind, Blend, Canvas, Compute, Draw, Format, Groups, Plan, Program, Step, Tally};
@@ -28,7 +28,7 @@ struct Ready {
     pipeline: wgpu::RenderPipeline,
     group: wgpu::BindGroup,
     /// Left, top, width, height.
-    scissor: Option<[u32; 4]>,
+    scissor: [u32; 4],
     amount: Amount,
 }
 
@@ -46,12 +46,12 @@ struct Before<'a> {
 }
 
 impl Runner {
-    /// Draws the plans of a group into a texture, which is cleared first.
+    /// Draws the plans of a group into a part of a texture, which is cleared first.
     pub fn run(
         &mut self,
         device: &Device,
         encoder: &mut wgpu::CommandEncoder,
-        into: &wgpu::Texture,
+        (into, part): (&wgpu::Texture, [u32; 4]),
         plans: &[Plan],
     ) -> Result<()> {
         let all = || plans.iter().flat_map(|plan| &plan.steps);
@@ -60,14 +60,14 @@ impl Runner {
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
         let deep = first.iter().any(|draw| draw.depth) || all().any(|step| reads_depth(step.binds()));
         let depth = deep.then(|| texture(device, size, DEPTH, usage)).transpose()?;
-        let target = Target::of(into, depth.as_ref(), wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT));
+        let target = Target::of((into, part), depth.as_ref(), wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT));
         let nothing = Scratches::default();
         self.pass(device, encoder, (&target, Before { depth: None, scratch: &nothing }), &first)?;
         let (with_scratch, others): (Vec<&Plan>, Vec<&Plan>) = plans.iter().partition(|plan| !plan.scratch.is_empty());
         for plan in with_scratch.into_iter().chain(others) {
             let scratch = self.spare.take(device, size, &plan.scratch)?;
             scratch.clear(encoder);
-            self.later(device, encoder, (into, Before { depth: depth.as_ref(), scratch: &scratch }), plan)?;
+            self.later(device, encoder, ((into, part), Before { depth: depth.as_ref(), scratch: &scratch }), plan)?;
             self.note(device, encoder, &scratch)?;
             self.spare.give_back(scratch);
         }
@@ -79,7 +79,7 @@ impl Runner {
         &mut self,
         device: &Device,
         encoder: &mut wgpu::CommandEncoder,
-        (into, before): (&wgpu::Texture, Before),
+        (into, before): ((&wgpu::Texture, [u32; 4]), Before),
         plan: &Plan,
     ) -> Result<()> {
         let later: Vec<&Step> = plan.steps.iter().filter(|step| !step.draw().is_some_and(is_first)).collect();
@@ -158,7 +158,7 @@ impl Runner {
     ) -> Result<()> {
         let mut ready = Vec::with_capacity(draws.len());
         for draw in draws {
-            let Some(scissor) = scissor(draw, target.size_px) else { continue };
+            let Some(scissor) = scissor(draw, target.part) else { continue };
             let bound = self.all_bound(device, encoder, &draw.binds, before)?;
             let depth = target.depth.is_some().then_some(draw.depth);
             let way = Way { blend: draw.blend, into: target.formats.clone(), depth };
@@ -167,7 +167,7 @@ impl Runner {
                 Some(number) => Amount::Found(before.scratch.buffer(number)?.clone()),
                 None => Amount::Count(draw.vertices, draw.instances),
             };
-            ready.push(Ready { pipeline, group, scissor: Some(scissor), amount });
+            ready.push(Ready { pipeline, group, scissor, amount });
         }
         pass(encoder, target, &ready);
         Ok(())
@@ -176,23 +176,24 @@ impl Runner {
     /// Fills a texture with one color.
     pub fn clear(&self, encoder: &mut wgpu::CommandEncoder, into: &wgpu::Texture, color: Rgba) {
         let [r, g, b, a] = color.map(f64::from);
-        pass(encoder, &Target::of(into, None, wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a })), &[]);
+        pass(encoder, &Target::of((into, all(into)), None, wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a })), &[]);
     }
 
-    /// Runs a program that reads one float texture, over all of another texture.
+    /// Runs a program that reads one float texture, over a part of another texture.
     pub fn lay(
         &mut self,
         device: &Device,
         encoder: &mut wgpu::CommandEncoder,
         (program, blend): (&'static Program, Blend),
         (from, into): (&wgpu::Texture, &wgpu::Texture),
+        part: [u32; 4],
     ) -> Result<()> {
         let view = from.create_view(&Default::default());
         let bound = [Bound::Texture(Texture { view, format: Format::Rgba32Float })];
         let way = Way { blend, into: vec![into.format()], depth: None };
         let (pipeline, group) = self.pipelines.get(device, (program, &[]), &bound, way)?;
-        let draw = Ready { pipeline, group, scissor: None, amount: Amount::Count(3, 1) };
-        pass(encoder, &Target::of(into, None, wgpu::LoadOp::Load), &[draw]);
+        let draw = Ready { pipeline, group, scissor: part, amount: Amount::Count(3, 1) };
+        pass(encoder, &Target::of((into, part), None, wgpu::LoadOp::Load), &[draw]);
         Ok(())
     }
 
@@ -243,7 +244,7 @@ impl Runner {
                 check_size(device, drawn.size_px.0, drawn.size_px.1)?;
                 let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
                 let into = texture(device, drawn.size_px, FRAME, usage)?;
-                self.run(device, encoder, &into, std::slice::from_ref(&drawn.plan))?;
+                self.run(device, encoder, (&into, all(&into)), std::slice::from_ref(&drawn.plan))?;
                 let view = into.create_view(&Default::default());
                 Ok(Bound::Texture(Texture { view, format: Format::Rgba32Float }))
             }
@@ -284,12 +285,14 @@ fn is_same(before: &Step, step: &Step) -> bool {
     }
 }
 
-/// The pixels of a frame to draw; `None` if there are none.
-fn scissor(draw: &Draw, frame: [u32; 2]) -> Option<[u32; 4]> {
-    let Some([x, y, width, height]) = draw.scissor_px else { return Some([0, 0, frame[0], frame[1]]) };
-    let width = width.min(frame[0].saturating_sub(x));
-    let height = height.min(frame[1].saturating_sub(y));
-    (width > 0 && height > 0).then_some([x, y, width, height])
+/// The pixels of a part to draw; `None` if there are none.
+fn scissor(draw: &Draw, part: [u32; 4]) -> Option<[u32; 4]> {
+    let Some(own) = draw.scissor_px else { return Some(part) };
+    let [(left, right), (top, bottom)] = [0, 1].map(|axis| {
+        let end = |rect: [u32; 4]| rect[axis].saturating_add(rect[axis + 2]);
+        (own[axis].max(part[axis]), end(own).min(end(part)))
+    });
+    (left < right && top < bottom).then(|| [left, top, right - left, bottom - top])
 }
 
 /// One pass of draws.
@@ -310,9 +313,8 @@ fn pass(encoder: &mut wgpu::CommandEncoder, target: &Target, draws: &[Ready]) {
         ..Default::default()
     });
     for draw in draws {
-        if let Some([x, y, width, height]) = draw.scissor {
-            pass.set_scissor_rect(x, y, width, height);
-        }
+        let [x, y, width, height] = draw.scissor;
+        pass.set_scissor_rect(x, y, width, height);
         pass.set_pipeline(&draw.pipeline);
         pass.set_bind_group(0, &draw.group, &[]);
         match &draw.amount {

@@ -16,19 +16,23 @@ pub struct Target {
     pub depth: Option<wgpu::TextureView>,
     /// What is there at first.
     pub load: wgpu::LoadOp<wgpu::Color>,
-    /// Width and height.
-    pub size_px: [u32; 2],
+    /// The part of it that is drawn: left, top, width, height.
+    pub part: [u32; 4],
 }
 
 impl Target {
-    /// One texture.
-    pub fn of(into: &wgpu::Texture, depth: Option<&wgpu::Texture>, load: wgpu::LoadOp<wgpu::Color>) -> Target {
+    /// A part of one texture.
+    pub fn of(
+        (into, part): (&wgpu::Texture, [u32; 4]),
+        depth: Option<&wgpu::Texture>,
+        load: wgpu::LoadOp<wgpu::Color>,
+    ) -> Target {
         Target {
             colors: vec![into.create_view(&Default::default())],
             formats: vec![into.format()],
             depth: depth.map(|depth| depth.create_view(&Default::default())),
             load,
-            size_px: [into.width(), into.height()],
+            part,
         }
     }
 }
@@ -149,7 +153,7 @@ impl Scratches {
             formats: Vec::new(),
             depth: depths.transpose()?,
             load: if canvas.clear { wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) } else { wgpu::LoadOp::Load },
-            size_px: [0; 2],
+            part: [0; 4],
         };
         for &(number, layer) in &canvas.textures {
             let texture = self.texture(number)?;
@@ -160,7 +164,7 @@ impl Scratches {
                 ..Default::default()
             }));
             target.formats.push(texture.format());
-            target.size_px = [texture.width(), texture.height()];
+            target.part = all(texture);
         }
         Ok(target)
     }
@@ -199,6 +203,11 @@ impl Scratches {
         let count = self.all.len();
         self.all.get(number).ok_or_else(|| failed(format!("a plan wants scratch {number} of its own {count}")))
     }
+}
+
+/// All of a texture: left, top, width, height.
+pub fn all(texture: &wgpu::Texture) -> [u32; 4] {
+    [0, 0, texture.width(), texture.height()]
 }
 
 /// Textures on top of one another that are drawn and read.
