@@ -24,8 +24,8 @@ pub fn pass(ready: &Ready, given: &Given, which: Which, out: &mut [Rgba]) {
     let scene = Scene::new(ready, given);
     let number = |v: f32| [v, v, v, 1.0];
     match which.pass.name {
-        name if name == COLOR.name => drawn(&scene, |drawing| fill(out, given, |i| drawing.pixel(i).0)),
-        name if name == passes::INK.name => drawn(&scene, |drawing| fill(out, given, |i| number(drawing.pixel(i).1))),
+        name if name == COLOR.name => drawn(&scene, |drawing| draw(out, given, drawing, |color, _| color)),
+        name if name == passes::INK.name => drawn(&scene, |drawing| draw(out, given, drawing, |_, ink| number(ink))),
         name if name == passes::TONE.name => {
             let tones = tones(&scene);
             fill(out, given, |i| number(tones[i]));
@@ -45,6 +45,12 @@ pub fn pass(ready: &Ready, given: &Given, which: Which, out: &mut [Rgba]) {
 fn fill(out: &mut [Rgba], given: &Given, at: impl Fn(usize) -> Rgba + Sync) {
     let pixels = out.par_iter_mut().zip(&given.triangle).enumerate();
     pixels.filter(|(_, (_, triangle))| **triangle != NONE).for_each(|(i, (out, _))| *out = at(i));
+}
+
+/// Writes something of the colors and the ink of a drawing to the pixels that show the layer.
+fn draw(out: &mut [Rgba], given: &Given, drawing: &Drawing, of: impl Fn(Rgba, f32) -> Rgba + Sync) {
+    let rows = out.par_chunks_mut(given.size_px.0.max(1)).enumerate();
+    rows.for_each(|(y, row)| drawing.row(y, |x, color, ink| row[x] = of(color, ink)));
 }
 
 /// The noise of this name, or that of the first mark that has one.
@@ -73,7 +79,7 @@ pub fn grey(ready: &Ready, given: &Given) -> Vec<f32> {
     };
     let mut drawn = vec![[0.0; 4]; shaded.len()];
     made(&Scene::new(ready, given), &sets, (&shaded, &vec![CODE as f32; shaded.len()]), |drawing| {
-        fill(&mut drawn, given, |i| drawing.pixel(i).0);
+        draw(&mut drawn, given, drawing, |color, _| color);
     });
     drawn.into_par_iter().map(code).collect()
 }
@@ -124,26 +130,26 @@ pub fn tones(scene: &Scene) -> Vec<f32> {
     let (tone, given) = (&scene.ready.strokes.tone, scene.given);
     let range = Range { dark: tone.dark, light: tone.light, gamma: tone.gamma };
     let light = |i: usize| match tone.of {
-        ToneOf::Light => brightness([f64::from(given.light[i]); 3]),
+        ToneOf::Light => given.light[i],
         ToneOf::Color => {
-            let [r, g, b, a] = given.shaded[i].map(f64::from);
-            if a > 0.0 { brightness([r / a, g / a, b / a]) } else { 0.0 }
+            let [r, g, b, a] = given.shaded[i];
+            let often = if a > 0.0 { 1.0 / a } else { 0.0 };
+            brightness([r, g, b]) * often
         }
     };
     let mut tones = vec![0.0; given.triangle.len()];
     let runs = tones.par_chunks_mut(RUN).zip(given.triangle.par_chunks(RUN)).enumerate();
     runs.filter(|(_, (_, triangles))| triangles.iter().any(|triangle| *triangle != NONE)).for_each(
         |(run, (tones, triangles))| {
-            let mut lights = [0.0; RUN];
-            let lights = &mut lights[..tones.len()];
-            lights.iter_mut().enumerate().for_each(|(k, own)| *own = light(run * RUN + k));
             vectorised(
                 #[inline(always)]
-                || range.tones(lights),
+                || {
+                    tones.iter_mut().enumerate().for_each(|(k, own)| *own = light(run * RUN + k));
+                    range.tones(tones);
+                },
             );
-            for ((tone, light), triangle) in tones.iter_mut().zip(lights).zip(triangles) {
-                *tone = if *triangle == NONE { 0.0 } else { *light as f32 };
-            }
+            let empty = tones.iter_mut().zip(triangles).filter(|(_, triangle)| **triangle == NONE);
+            empty.for_each(|(tone, _)| *tone = 0.0);
         },
     );
     tones

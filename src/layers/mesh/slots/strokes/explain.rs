@@ -25,7 +25,8 @@ pub fn entries(ready: &Ready, given: &Given, i: usize) -> Vec<Entry> {
         strokes.marks.iter().filter_map(|mark| Some((mark.name.as_str(), Set::of(mark)?))).collect();
     let of_noises = noises.iter().map(|(name, noise)| of_noise(&scene, name, noise, i)).collect();
     let of_marks = sheet_of(&scene, (&given.shaded, &tone), &noises, |sheet| {
-        sets.iter().map(|(name, set)| of_mark(ready, sheet, (name, set), i)).collect()
+        let at = (i % given.size_px.0, i / given.size_px.0);
+        sets.iter().map(|(name, set)| of_mark(ready, sheet, (name, set), at)).collect()
     });
     vec![
         entry("tone", "tone", Value::Number(tone[i].into())),
@@ -68,19 +69,19 @@ fn of_noise(scene: &Scene, name: &str, noise: &Noise, i: usize) -> Vec<Entry> {
     ]
 }
 
-fn of_mark(ready: &Ready, sheet: &Sheet, (name, set): (&str, &Set), i: usize) -> Vec<Entry> {
+fn of_mark(ready: &Ready, sheet: &Sheet, (name, set): (&str, &Set), at: (usize, usize)) -> Vec<Entry> {
     let [share, threshold, covered] = match set {
-        Set::Ink(ink) => sheet.inked(&ready.strokes, ink, i).map_or([None; 3], |inked| {
-            let reached = inked.share > 0.0;
-            [Some(inked.share), reached.then_some(inked.threshold), Some(inked.covered)]
+        Set::Ink(ink) => sheet.inked(&ready.strokes, ink, at).map_or([None; 3], |inked| {
+            let [share, threshold, covered] = [inked.share, inked.threshold, inked.covered].map(|run| run[0]);
+            [Some(share), (share > 0.0).then_some(threshold), Some(covered)]
         }),
-        Set::Outline(outline) => [None, None, Some(sheet.outlined(&ready.strokes, outline)(i))],
+        Set::Outline(outline) => [None, None, Some(sheet.outlined(&ready.strokes, outline)(at)[0])],
         Set::Pigment(_) | Set::Relief(_) => [None; 3],
     };
     vec![
         entry("name", "mark", Value::Of(Some(name.to_owned()))),
-        entry("share", "D", number(share)),
-        entry("threshold", "tau", number(threshold)),
-        entry("covered", "c", number(covered)),
+        entry("share", "D", number(share.map(f64::from))),
+        entry("threshold", "tau", number(threshold.map(f64::from))),
+        entry("covered", "c", number(covered.map(f64::from))),
     ]
 }

@@ -1,20 +1,26 @@
-//! Marks: how noises and tones become a drawing, pixel by pixel.
+//! Marks: how noises and tones become a drawing, many pixels at once.
 
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 
-use glam::DVec3;
 use rayon::prelude::*;
 
-use super::marks::{Ink, Outline, Relief, Set};
+use super::marks::{Ink, Outline, Pigment, Relief, Set};
 use super::model::{Force, Ground, Side};
 use super::rim::{Pixels, Rules, squares};
 use super::sum::Noise;
-use super::tone::{Thresholds, share, threshold};
+use super::tone::{share, threshold, within};
 use crate::base::color;
-use crate::base::maths::{cos, sin, smoothstep};
+use crate::base::maths::{cos, sin};
 use crate::base::pixels::{Rgba, decode};
+use crate::base::simd::vectorised;
 use crate::layers::space::raster::NONE;
+
+/// So many pixels of a row are drawn at once.
+pub const RUN: usize = 64;
+
+/// A number for each of them.
+pub type Run = [f32; RUN];
 
 /// What a drawing is made from: one of each for every pixel of the frame.
 pub struct Sheet<'a> {
@@ -30,39 +36,40 @@ pub struct Sheet<'a> {
     pub scale: f64,
 }
 
-/// A pixel in the making.
-struct Cell {
-    /// The pixel.
-    i: usize,
-    /// Its shaded color, straight.
-    scene: DVec3,
+/// Pixels in the making.
+struct Cells {
+    /// The column and the row of the first.
+    at: (usize, usize),
+    /// Their shaded colors, straight.
+    scene: [Run; 3],
+    /// How much of each the layer covers.
+    coverage: Run,
     /// Premultiplied by `alpha`.
-    color: DVec3,
-    alpha: f64,
+    color: [Run; 3],
+    alpha: Run,
     /// How much of the ground no ink has covered.
-    bare: f64,
+    bare: Run,
 }
 
-/// How a pixel is inked.
-#[derive(Clone, Copy, Debug, Default)]
+/// How pixels are inked.
 pub struct Inked {
     /// The share of such places that is.
-    pub share: f64,
+    pub share: Run,
     /// What the noise is below where it is.
-    pub threshold: f64,
+    pub threshold: Run,
     /// How much it covers.
-    pub covered: f64,
+    pub covered: Run,
 }
 
 /// What is drawn of one mark.
-type Brush<'a> = Box<dyn Fn(&mut Cell) + Sync + 'a>;
+type Brush<'a> = Box<dyn Fn(&mut Cells) + Sync + 'a>;
 
 /// Marks, ready to be drawn in any pixel.
 pub struct Drawing<'a> {
     sheet: &'a Sheet<'a>,
     strokes: &'a Force,
     brushes: Vec<Brush<'a>>,
-    paper: DVec3,
+    paper: [f32; 3],
 }
 
 impl<'a> Drawing<'a> {
@@ -70,73 +77,144 @@ impl<'a> Drawing<'a> {
     pub fn new(strokes: &'a Force, marks: &'a [Set], sheet: &'a Sheet) -> Self {
         let brush = |mark: &'a Set| match mark {
             Set::Ink(ink) => sheet.ink(strokes, ink),
-            Set::Pigment(pigment) => sheet.pigment(&pigment.noise, pigment.strength),
+            Set::Pigment(pigment) => sheet.pigment(pigment),
             Set::Relief(relief) => sheet.relief(strokes, relief),
             Set::Outline(outline) => Some(sheet.outline(strokes, outline)),
         };
         Drawing { sheet, strokes, brushes: marks.iter().filter_map(brush).collect(), paper: linear(&strokes.paper) }
     }
 
-    /// The color of a pixel that shows the layer, premultiplied, and how much ink there is.
-    pub fn pixel(&self, i: usize) -> (Rgba, f32) {
-        let [r, g, b, coverage] = self.sheet.shaded[i].map(f64::from);
-        let scene = if coverage > 0.0 { DVec3::new(r, g, b) / coverage } else { DVec3::ZERO };
-        let (color, alpha) = match self.strokes.ground {
-            Ground::Paper => (self.paper, 1.0),
-            Ground::Scene => (scene.lerp(self.paper, self.strokes.fade), 1.0),
-            Ground::Clear => (DVec3::ZERO, 0.0),
-        };
-        let mut cell = Cell { i, scene, color, alpha, bare: 1.0 };
-        self.brushes.iter().for_each(|brush| brush(&mut cell));
-        let [r, g, b] = (cell.color * coverage).to_array().map(|v| v as f32);
-        ([r, g, b, (cell.alpha * coverage) as f32], (1.0 - cell.bare) as f32)
+    /// Calls `each` with the columns of a row that show the layer: with the color there, premultiplied, and how much ink
+    /// there is.
+    pub fn row(&self, y: usize, mut each: impl FnMut(usize, Rgba, f32)) {
+        let width = self.sheet.pixels.size_px.0;
+        let triangles = self.sheet.pixels.triangle[y * width..(y + 1) * width].chunks(RUN);
+        for (run, triangles) in triangles.enumerate() {
+            let own = |k: &usize| triangles[*k] != NONE;
+            if (0..triangles.len()).any(|k| own(&k)) {
+                let (colors, inks) = self.run((run * RUN, y));
+                (0..triangles.len()).filter(own).for_each(|k| each(run * RUN + k, colors[k], inks[k]));
+            }
+        }
+    }
+
+    /// The colors of pixels from this one on, and how much ink there is.
+    fn run(&self, at: (usize, usize)) -> ([Rgba; RUN], Run) {
+        let mut cells = vectorised(
+            #[inline(always)]
+            || self.ground(at),
+        );
+        self.brushes.iter().for_each(|brush| brush(&mut cells));
+        let (mut colors, mut inks) = ([[0.0; 4]; RUN], [0.0; RUN]);
+        let Cells { color: [r, g, b], alpha, coverage, bare, .. } = &cells;
+        vectorised(
+            #[inline(always)]
+            || {
+                for k in 0..RUN {
+                    colors[k] = [r[k], g[k], b[k], alpha[k]].map(|v| v * coverage[k]);
+                    inks[k] = 1.0 - bare[k];
+                }
+            },
+        );
+        (colors, inks)
+    }
+
+    /// Pixels without marks.
+    #[inline(always)]
+    fn ground(&self, at: (usize, usize)) -> Cells {
+        let shaded = self.sheet.run(self.sheet.shaded, at);
+        let (mut scene, mut coverage) = ([[0.0; RUN]; 3], [0.0; RUN]);
+        for (k, [r, g, b, a]) in shaded.into_iter().enumerate() {
+            let often = if a > 0.0 { 1.0 / a } else { 0.0 };
+            [scene[0][k], scene[1][k], scene[2][k], coverage[k]] = [r * often, g * often, b * often, a];
+        }
+        let (fade, mut color, mut alpha) = (self.strokes.fade as f32, [[0.0; RUN]; 3], [1.0; RUN]);
+        match self.strokes.ground {
+            Ground::Paper => color = self.paper.map(|paper| [paper; RUN]),
+            Ground::Scene => {
+                for ((color, scene), paper) in color.iter_mut().zip(&scene).zip(self.paper) {
+                    (0..RUN).for_each(|k| color[k] = scene[k] + (paper - scene[k]) * fade);
+                }
+            }
+            Ground::Clear => alpha = [0.0; RUN],
+        }
+        Cells { at, scene, coverage, color, alpha, bare: [1.0; RUN] }
     }
 }
 
 /// Linear light of `#rrggbb`; what is no color is black.
-pub fn linear(text: &str) -> DVec3 {
-    let [r, g, b, _] = color::parse(text).map_or([0.0; 4], decode).map(f64::from);
-    DVec3::new(r, g, b)
+pub fn linear(text: &str) -> [f32; 3] {
+    let [r, g, b, _] = color::parse(text).map_or([0.0; 4], decode);
+    [r, g, b]
 }
 
 impl Sheet<'_> {
+    /// What pixels of a row have, from this one on; beyond the frame there is nothing.
+    #[inline(always)]
+    fn run<T: Copy + Default>(&self, of: &[T], at: (usize, usize)) -> [T; RUN] {
+        self.run_beside(of, (at.0 as isize, at.1 as isize), T::default())
+    }
+
+    /// The same, also from one on that is not in the frame: what is there is `beyond`.
+    #[inline(always)]
+    fn run_beside<T: Copy>(&self, of: &[T], (x, y): (isize, isize), beyond: T) -> [T; RUN] {
+        let ((width, height), mut run) = (self.pixels.size_px, [beyond; RUN]);
+        let inside = x.max(0)..(x + RUN as isize).min(width as isize);
+        if (0..height as isize).contains(&y) && !inside.is_empty() {
+            let row = &of[y as usize * width..][..width];
+            let own = (inside.start - x) as usize..(inside.end - x) as usize;
+            run[own].copy_from_slice(&row[inside.start as usize..inside.end as usize]);
+        }
+        run
+    }
+
     /// Ink where a noise is below a threshold that follows the tone.
     fn ink<'a>(&'a self, strokes: &'a Force, ink: &'a Ink) -> Option<Brush<'a>> {
         let inking = self.inking(strokes, ink)?;
-        let thresholds = Thresholds::new(inking.even);
         let paint = Paint::new(&ink.color, ink.shade, strokes);
-        Some(Box::new(move |cell| {
-            let inked = inking.at(cell.i, |share, x| thresholds.serving(share, x, inking.soft));
-            cell.cover(&paint, inked.covered);
+        Some(Box::new(move |cells| {
+            vectorised(
+                #[inline(always)]
+                || cells.cover(&paint, &inking.run(self, cells.at).covered),
+            );
         }))
     }
 
-    /// How a pixel is inked; `None` if the noise is not there.
-    pub fn inked(&self, strokes: &Force, ink: &Ink, i: usize) -> Option<Inked> {
-        let inking = self.inking(strokes, ink)?;
-        Some(inking.at(i, |share, _| threshold(share, inking.even)))
+    /// How pixels from this one on are inked; `None` if the noise is not there.
+    pub fn inked(&self, strokes: &Force, ink: &Ink, at: (usize, usize)) -> Option<Inked> {
+        Some(self.inking(strokes, ink)?.run(self, at))
     }
 
     fn inking<'a>(&'a self, strokes: &Force, ink: &'a Ink) -> Option<Inking<'a>> {
         let (noise, of) = (self.noises.get(&ink.noise)?, strokes.noises.get(&ink.noise)?);
         let grain = ink.grain.as_ref().and_then(|grain| Some((&*self.noises.get(&grain.noise)?.value, grain.amount)));
+        let share = grain.map_or(0.0, |(_, share)| share);
+        let side = if ink.side == Side::High { -1.0 } else { 1.0 };
         Some(Inking {
             ink,
-            tone: self.tone,
             noise: &noise.value,
             even: of.even,
-            grain,
-            amount: ink.amount * strokes.amount,
-            soft: ink.softness * PI / (of.spacing * strokes.size),
+            grain: grain.map(|(values, _)| values),
+            mixed: [(1.0 - share * share).sqrt(), share].map(|part| (side * part) as f32),
+            amount: (ink.amount * strokes.amount) as f32,
+            soft: (ink.softness * PI / (of.spacing * strokes.size)) as f32,
         })
     }
 
     /// More or less pigment in the color.
-    fn pigment<'a>(&'a self, noise: &str, strength: f64) -> Option<Brush<'a>> {
-        let noise = self.noises.get(noise)?;
-        Some(Box::new(move |cell| {
-            let more = strength * (f64::from(noise.value[cell.i]) / 2.0).clamp(-1.0, 1.0);
-            cell.change(|c| c * (1.0 - (1.0 - c) * more));
+    fn pigment<'a>(&'a self, pigment: &Pigment) -> Option<Brush<'a>> {
+        let (noise, strength) = (self.noises.get(&pigment.noise)?, pigment.strength as f32);
+        Some(Box::new(move |cells| {
+            vectorised(
+                #[inline(always)]
+                || {
+                    let more = self.run(&noise.value, cells.at).map(|x| strength * (2.0 * within(x / 4.0 + 0.5) - 1.0));
+                    cells.change(
+                        #[inline(always)]
+                        |k, c| c * (1.0 - (1.0 - c) * more[k]),
+                    );
+                },
+            );
         }))
     }
 
@@ -144,12 +222,22 @@ impl Sheet<'_> {
     fn relief<'a>(&'a self, strokes: &Force, relief: &Relief) -> Option<Brush<'a>> {
         let (noise, of) = (self.noises.get(&relief.noise)?, strokes.noises.get(&relief.noise)?);
         let angle = relief.angle.to_radians();
-        let toward = (cos(angle), -sin(angle));
         let steep = relief.strength * of.spacing * strokes.size * self.scale / TAU;
-        Some(Box::new(move |cell| {
-            let (right, down) = self.slope(&noise.value, cell.i);
-            let light = (1.0 - steep * (right * toward.0 + down * toward.1)).clamp(0.0, 2.0);
-            cell.change(|c| c * light);
+        let toward = [steep * cos(angle), -steep * sin(angle)].map(|v| v as f32);
+        Some(Box::new(move |cells| {
+            vectorised(
+                #[inline(always)]
+                || {
+                    let [right, down] = self.slopes(&noise.value, cells.at);
+                    cells.change(
+                        #[inline(always)]
+                        |k, c| {
+                            let darker = right[k] * toward[0] + down[k] * toward[1];
+                            c * (2.0 * within((1.0 - darker) / 2.0))
+                        },
+                    );
+                },
+            );
         }))
     }
 
@@ -157,11 +245,16 @@ impl Sheet<'_> {
     fn outline<'a>(&'a self, strokes: &'a Force, outline: &'a Outline) -> Brush<'a> {
         let paint = Paint::new(&outline.color, outline.shade, strokes);
         let covered = self.outlined(strokes, outline);
-        Box::new(move |cell| cell.cover(&paint, covered(cell.i)))
+        Box::new(move |cells| {
+            vectorised(
+                #[inline(always)]
+                || cells.cover(&paint, &covered(cells.at)),
+            );
+        })
     }
 
-    /// How much a line along rims covers each pixel.
-    pub fn outlined<'a>(&'a self, strokes: &Force, outline: &'a Outline) -> impl Fn(usize) -> f64 + Sync + 'a {
+    /// How much a line along rims covers pixels from one on.
+    pub fn outlined<'a>(&'a self, strokes: &Force, outline: &'a Outline) -> impl Fn((usize, usize)) -> Run + Sync + 'a {
         let crease = outline.creases.map(|degrees| cos(degrees.to_radians()));
         let rim = self.pixels.rim(&Rules { step_px: outline.step * self.scale, crease });
         let noise = outline.noise.as_ref().and_then(|name| self.noises.get(name)).map(|noise| &*noise.value);
@@ -171,109 +264,129 @@ impl Sheet<'_> {
         let most = noise.map_or(0.0, |values| values.par_iter().copied().reduce(|| 0.0, f32::max));
         let reach = half * (1.0 + outline.vary * f64::from(most)) + soft / 2.0;
         let squares = squares(self.pixels.size_px, &rim, reach.ceil() as usize);
-        move |i| {
-            let x = noise.map_or(0.0, |noise| f64::from(noise[i]));
-            let inside = half * (1.0 + outline.vary * x) - f64::from(squares[i]).sqrt();
-            outline.opacity * (inside / soft + 0.5).clamp(0.0, 1.0)
+        let [half, vary, often, opacity] = [half, outline.vary, 1.0 / soft, outline.opacity].map(|v| v as f32);
+        #[inline(always)]
+        move |at| {
+            let x = noise.map_or([0.0; RUN], |noise| self.run(noise, at));
+            let mut covered = self.run(&squares, at);
+            for k in 0..RUN {
+                let inside = half * (1.0 + vary * x[k]) - covered[k].sqrt();
+                covered[k] = opacity * within(inside * often + 0.5);
+            }
+            covered
         }
     }
 
     /// How a value grows to the right and down: the mean of the differences to the pixels of the layer on both sides.
-    fn slope(&self, values: &[f32], i: usize) -> (f64, f64) {
-        let (width, height) = self.pixels.size_px;
-        let (x, y) = (i % width, i / width);
-        let own = |i: usize| self.pixels.triangle[i] != NONE;
-        let mean = |before: Option<usize>, after: Option<usize>| {
-            let before = before.filter(|i| own(*i)).map(|before| f64::from(values[i] - values[before]));
-            let after = after.filter(|i| own(*i)).map(|after| f64::from(values[after] - values[i]));
-            match (before, after) {
-                (Some(before), Some(after)) => (before + after) / 2.0,
-                (one, other) => one.or(other).unwrap_or(0.0),
-            }
-        };
-        let right = mean((x > 0).then(|| i - 1), (x + 1 < width).then(|| i + 1));
-        let down = mean((y > 0).then(|| i - width), (y + 1 < height).then(|| i + width));
-        (right, down)
+    #[inline(always)]
+    fn slopes(&self, values: &[f32], (x, y): (usize, usize)) -> [Run; 2] {
+        let (own, [x, y]) = (self.run(values, (x, y)), [x as isize, y as isize]);
+        [[1, 0], [0, 1]].map(
+            #[inline(always)]
+            |[right, down]| {
+                let side = |at: (isize, isize)| {
+                    let triangles = self.run_beside(self.pixels.triangle, at, NONE);
+                    (self.run_beside(values, at, 0.0), triangles.map(|of| if of == NONE { 0.0 } else { 1.0 }))
+                };
+                let (before, is_before) = side((x - right, y - down));
+                let (after, is_after) = side((x + right, y + down));
+                let mut slope = [0.0; RUN];
+                for k in 0..RUN {
+                    let sum = is_before[k] * (own[k] - before[k]) + is_after[k] * (after[k] - own[k]);
+                    slope[k] = if is_before[k] + is_after[k] > 1.0 { sum / 2.0 } else { sum };
+                }
+                slope
+            },
+        )
     }
 }
 
 /// An ink with all that tells where it goes.
 struct Inking<'a> {
     ink: &'a Ink,
-    tone: &'a [f32],
     noise: &'a [f32],
     /// Whether the noise is evened out.
     even: bool,
-    /// The noise that is mixed into it, and how much.
-    grain: Option<(&'a [f32], f64)>,
+    /// The noise that is mixed into it.
+    grain: Option<&'a [f32]>,
+    /// What both are multiplied by; less than 0 if high values ink.
+    mixed: [f32; 2],
     /// The most that is inked.
-    amount: f64,
+    amount: f32,
     /// How far edges reach.
-    soft: f64,
+    soft: f32,
 }
 
 impl Inking<'_> {
-    /// How a pixel is inked, by thresholds of a share and the noise.
-    fn at(&self, i: usize, threshold: impl Fn(f64, f64) -> f64) -> Inked {
-        let (ink, soft) = (self.ink, self.soft);
-        let inked = (self.amount * share(f64::from(self.tone[i]), ink.from, ink.to)).clamp(0.0, 1.0);
-        if inked == 0.0 {
-            return Inked::default();
+    /// How pixels from this one on are inked.
+    #[inline(always)]
+    fn run(&self, sheet: &Sheet, at: (usize, usize)) -> Inked {
+        let Inking { ink, even, mixed, amount, soft, .. } = *self;
+        let [from, to, opacity, rim] = [ink.from, ink.to, ink.opacity, 4.0 * ink.rim].map(|v| v as f32);
+        let (tone, noise) = (sheet.run(sheet.tone, at), sheet.run(self.noise, at));
+        let grain = self.grain.map_or([0.0; RUN], |grain| sheet.run(grain, at));
+        let mut inked = Inked { share: [0.0; RUN], threshold: [0.0; RUN], covered: [0.0; RUN] };
+        for k in 0..RUN {
+            let share = within(amount * share(tone[k], from, to));
+            let threshold = threshold(share, even);
+            let below = threshold - (mixed[0] * noise[k] + mixed[1] * grain[k]);
+            // Edges that are hard: infinitely far on one side, or on the other.
+            let x = within((below + soft) / (2.0 * soft));
+            let covered = x * x * (3.0 - 2.0 * x);
+            let covered = opacity * (covered + rim * covered * (1.0 - covered));
+            let covered = if covered < 1.0 { covered } else { 1.0 };
+            (inked.share[k], inked.threshold[k]) = (share, threshold);
+            inked.covered[k] = if share > 0.0 { covered } else { 0.0 };
         }
-        let mut x = f64::from(self.noise[i]);
-        if let Some((grain, amount)) = self.grain {
-            x = (1.0 - amount * amount).sqrt() * x + amount * f64::from(grain[i]);
-        }
-        let x = if ink.side == Side::High { -x } else { x };
-        let threshold = threshold(inked, x);
-        let below = x - threshold;
-        let covered = match soft > 0.0 {
-            true => 1.0 - smoothstep(-soft, soft, below),
-            false => f64::from(u8::from(below < 0.0)),
-        };
-        let covered = (ink.opacity * (covered + 4.0 * ink.rim * covered * (1.0 - covered))).min(1.0);
-        Inked { share: inked, threshold, covered }
+        inked
     }
 }
 
-impl Cell {
-    fn cover(&mut self, paint: &Paint, covered: f64) {
-        if covered == 0.0 {
-            return;
+impl Cells {
+    #[inline(always)]
+    fn cover(&mut self, paint: &Paint, covered: &Run) {
+        for ((color, scene), own) in self.color.iter_mut().zip(&self.scene).zip(paint.color) {
+            for k in 0..RUN {
+                color[k] = color[k] * (1.0 - covered[k]) + (own + scene[k] * paint.scene) * covered[k];
+            }
         }
-        let color = match paint {
-            Paint::Scene(shade) => self.scene * *shade,
-            Paint::Color(color) => *color,
-        };
-        self.color = self.color * (1.0 - covered) + color * covered;
-        self.alpha = self.alpha * (1.0 - covered) + covered;
-        self.bare *= 1.0 - covered;
+        for ((alpha, bare), covered) in self.alpha.iter_mut().zip(&mut self.bare).zip(covered) {
+            *alpha = *alpha * (1.0 - covered) + covered;
+            *bare *= 1.0 - covered;
+        }
     }
 
-    /// Changes each channel of the straight color.
-    fn change(&mut self, change: impl Fn(f64) -> f64) {
-        if self.alpha > 0.0 {
-            self.color = DVec3::from_array((self.color / self.alpha).to_array().map(change)) * self.alpha;
+    /// Changes each channel of the straight colors.
+    #[inline(always)]
+    fn change(&mut self, change: impl Fn(usize, f32) -> f32) {
+        let alpha = self.alpha;
+        for color in &mut self.color {
+            for k in 0..RUN {
+                let straight = if alpha[k] > 0.0 { color[k] / alpha[k] } else { 0.0 };
+                color[k] = change(k, straight) * alpha[k];
+            }
         }
     }
 }
 
-/// What a mark is drawn with: a color, or the scene's own times a shade.
-pub enum Paint {
-    /// The scene's own, times this.
-    Scene(f64),
-    /// This, in linear light.
-    Color(DVec3),
+/// What a mark is drawn with: a color in linear light, and so much of the scene's own.
+pub struct Paint {
+    /// See [`Paint`].
+    pub color: [f32; 3],
+    /// See [`Paint`].
+    pub scene: f32,
 }
 
 impl Paint {
     /// The color of a mark, times a shade.
     pub fn new(color: &str, shade: f64, strokes: &Force) -> Paint {
-        match color {
-            "scene" => Paint::Scene(shade),
-            "ink" => Paint::Color(linear(&strokes.ink) * shade),
-            "paper" => Paint::Color(linear(&strokes.paper) * shade),
-            other => Paint::Color(linear(other) * shade),
-        }
+        let shade = shade as f32;
+        let color = match color {
+            "scene" => return Paint { color: [0.0; 3], scene: shade },
+            "ink" => &strokes.ink,
+            "paper" => &strokes.paper,
+            other => other,
+        };
+        Paint { color: linear(color).map(|v| v * shade), scene: 0.0 }
     }
 }

@@ -2,8 +2,6 @@
 
 use std::f64::consts::{PI, TAU};
 
-use glam::DVec3;
-
 use super::emit;
 use super::ink::{Paint, linear};
 use super::marks::{Ink, Outline, Pigment, Relief, Set};
@@ -145,7 +143,7 @@ impl Style {
     pub fn of(scene: &Scene, ambient: f64, count: usize) -> Style {
         let strokes: &Force = &scene.ready.strokes;
         Style {
-            paper: linear(&strokes.paper).as_vec3().to_array(),
+            paper: linear(&strokes.paper),
             fade: strokes.fade as f32,
             toward: scene.given.toward.as_vec3().to_array(),
             ambient: ambient as f32,
@@ -237,10 +235,7 @@ impl Mark {
     }
 
     fn painted(paint: Paint) -> Mark {
-        let (color, scene) = match paint {
-            Paint::Scene(shade) => (DVec3::ZERO, shade),
-            Paint::Color(color) => (color, 0.0),
-        };
-        Mark { color: color.as_vec3().to_array(), scene: scene as f32, ..Mark::default() }
+        let Paint { color, scene } = paint;
+        Mark { color, scene, ..Mark::default() }
     }
 }
