@@ -10,10 +10,13 @@ use crate::tui::state::State;
 
 /// What was asked of the worker, and when it may be asked for the next picture. Keys have to wait while a picture is written
 /// to a slow link, so after it the link stays free for twice as long; while half-blocks play, for as long as it takes for the bytes
-/// to be no more a second than they may be. Pictures in between are dropped, never queued.
+/// to be no more a second than they may be, and no picture is made before the last is written. Pictures in between are dropped, never
+/// queued.
 #[derive(Default)]
 pub struct Throttle {
     asked: Option<Request>,
+    /// Whether a picture was asked for that is not written yet.
+    awaits: bool,
     written: Option<Arc<TerminalPicture>>,
     free: Option<Instant>,
     /// All bytes given to the terminal until the last picture.
@@ -30,13 +33,15 @@ impl Throttle {
         if self.asked.as_ref() == Some(&request) {
             return None;
         }
-        if !self.left().is_zero() {
+        let calm = request.picture.as_ref().is_some_and(|picture| picture.calm);
+        if !self.left().is_zero() || calm && self.awaits {
             let same = |asked: &Request| Arc::ptr_eq(&asked.scene, &request.scene) && asked.probe == request.probe;
             if self.asked.as_ref().is_some_and(same) {
                 return None;
             }
             request.picture = None;
         }
+        self.awaits = request.picture.is_some();
         self.asked = Some(request.clone());
         Some(request)
     }
@@ -46,6 +51,7 @@ impl Throttle {
         let shown = state.picture.latest.as_ref();
         if self.written.as_ref().map(Arc::as_ptr) != shown.map(Arc::as_ptr) {
             self.written = shown.cloned();
+            self.awaits = false;
             let bytes = given - std::mem::replace(&mut self.given, given);
             let calm = shown.is_some_and(|shown| shown.wanted.calm);
             let paced = Duration::from_secs_f64(bytes as f64 / state.picture.graphics.rate as f64);
@@ -71,6 +77,25 @@ mod tests {
     use crate::tui::graphics::Protocol;
     use crate::tui::tests::screens::{opened, see};
     use crate::tui::tests::support::press;
+
+    #[test]
+    fn no_picture_of_half_blocks_is_made_before_the_last_is_written() {
+        for (protocol, asks) in [(Protocol::Blocks, false), (Protocol::Sixel, true)] {
+            let mut state = opened((160, 48));
+            state.picture.graphics.forced = Some(protocol);
+            press(&mut state, "/ \"speed\" Enter P");
+            let mut throttle = Throttle::default();
+            assert!(throttle.request(&state).is_some_and(|request| request.picture.is_some()));
+            state.play.time = 0.3;
+            assert_eq!(throttle.request(&state).is_some(), asks, "{protocol:?}");
+            press(&mut state, "+");
+            assert!(throttle.request(&state).is_some(), "an edit does not wait");
+            see(&mut state);
+            throttle.wrote(&state, Duration::ZERO, 0);
+            state.play.time = 0.4;
+            assert!(throttle.request(&state).is_some_and(|request| request.picture.is_some()), "{protocol:?}");
+        }
+    }
 
     #[test]
     fn half_blocks_play_no_faster_than_the_line_takes_them() {
