@@ -53,36 +53,43 @@ pub fn overlay(scene: &Scene, synth: Option<&Synth>, view: &View) -> Vec<Mark> {
     let nearest = synth.as_ref().map(|(synth, moment)| nearest(synth, moment, &view)).unwrap_or_default();
     let textures = if view.of_textures { BTreeSet::new() } else { scene.textures() };
     let is_shown = |i: usize| !textures.contains(&i) && view.only.is_none_or(|only| only == i);
+    let in_layer = view.selection.as_deref().and_then(|selection| Pointer(selection).item_of("/layers"));
     let mut marks = Vec::new();
     if let Some((synth, moment)) = &synth {
         for (i, layer) in synth.layers.iter().enumerate().filter(|(i, _)| is_shown(*i)) {
-            let selection = selected_in(i, &view).map(str::to_owned);
+            let selection = in_layer.filter(|(layer, _)| *layer == i).map(|(_, way)| way.to_owned());
             let own = View { nearest: nearest.get(&i).cloned(), selection, ..view.clone() };
-            marks.extend(of_layer(i, layer.marks(&own, moment), &view));
+            marks.extend(of_layer(i, layer.marks(&own, moment)));
         }
     }
     for (i, layer) in scene.layers.iter().enumerate().filter(|(i, _)| is_shown(*i)) {
-        marks.extend(of_layer(i, layer.technique().marks(&view), &view));
+        marks.extend(of_layer(i, layer.technique().marks(&view)));
     }
     for (_, moment) in synth.iter().filter(|(synth, _)| synth.stage.seen_by().is_some()) {
         // The topmost of what is in space.
         let over_ground = View { nearest: nearest.values().next_back().cloned(), ..view.clone() };
-        let world = space::marks::marks(&over_ground, moment, scene.camera.as_ref());
-        marks.extend(world.into_iter().map(|mark| selected_by(view.selection.as_deref(), mark)));
+        marks.extend(space::marks::marks(&over_ground, moment, scene.camera.as_ref()));
+    }
+    if let Some(belongs) = view.selection.as_deref().map(belongs) {
+        marks.iter_mut().for_each(|mark| mark.selected = belongs(mark));
     }
     marks.sort_by_key(|mark| mark.look.order);
     marks
 }
 
 /// The marks that a layer made, as marks of the document.
-fn of_layer(layer: usize, marks: Vec<Mark>, view: &View) -> impl Iterator<Item = Mark> {
-    let selection = selected_in(layer, view);
-    marks.into_iter().map(move |mark| selected_by(selection, Mark { layer: Some(layer), ..mark }))
+fn of_layer(layer: usize, marks: Vec<Mark>) -> impl Iterator<Item = Mark> {
+    marks.into_iter().map(move |mark| Mark { layer: Some(layer), ..mark })
 }
 
-/// What is selected of a layer, as a JSON pointer in it.
-fn selected_in(layer: usize, view: &View) -> Option<&str> {
-    Pointer(view.selection.as_deref()?).below(&format!("/layers/{layer}"))
+/// Whether a mark belongs to what is at a JSON pointer.
+pub fn belongs(selection: &str) -> impl Fn(&Mark) -> bool {
+    let in_layer = Pointer(selection).item_of("/layers");
+    move |mark| match (mark.layer, in_layer) {
+        (None, _) => is_selected(&mark.path, selection),
+        (Some(layer), Some((selected, way))) => layer == selected && is_selected(&mark.path, way),
+        (Some(_), None) => false,
+    }
 }
 
 /// The marks of what is at a JSON pointer if it went to where a place of the picture points, at scene time `t`.
@@ -138,11 +145,6 @@ pub fn pick(scene: &Scene, at: Point, reach_px: f64) -> Option<Hit> {
         Some(Hit { path: format!("/layers/{i}{}", hit.path), ..hit })
     });
     hits.min_by(|a, b| a.distance_px.total_cmp(&b.distance_px))
-}
-
-/// A mark, with whether it is selected.
-fn selected_by(selection: Option<&str>, mark: Mark) -> Mark {
-    Mark { selected: selection.is_some_and(|selection| is_selected(&mark.path, selection)), ..mark }
 }
 
 /// A mark is selected if the selection is in it, or if it is in the selection and that is an item of the layer or

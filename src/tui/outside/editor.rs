@@ -25,6 +25,7 @@ use crate::tui::events::{Effect, Event};
 use crate::tui::graphics;
 use crate::tui::graphics::request::Request;
 use crate::tui::layout::picture;
+use crate::tui::panes::marks::Kept;
 use crate::tui::state::tutor::Tutor;
 use crate::tui::state::{Message, Mode, Pane, State, USUAL, kept};
 use crate::tui::text::color::Depth;
@@ -71,6 +72,8 @@ pub struct Editor {
     pub(super) interrupted: bool,
     /// When the drawing began that the terminal has not fully read yet.
     pub(super) drawn: Option<Instant>,
+    /// What is kept from one drawing to the next.
+    pub(super) kept: Kept,
 }
 
 /// How long the terminal has to read the rest of the output when the editor ends.
@@ -129,6 +132,7 @@ impl Editor {
             returned: false,
             interrupted: false,
             drawn: None,
+            kept: Kept::default(),
         };
         editor.enter(&typed)?;
         Ok(editor)

@@ -11,6 +11,7 @@ use crate::files::{self};
 use crate::tui::commands::update::update;
 use crate::tui::document::open_scene::OpenScene;
 use crate::tui::events::{Effect, Event, Published};
+use crate::tui::panes::marks::Kept;
 use crate::tui::panes::view;
 use crate::tui::state::State;
 use crate::tui::text::color::Depth;
@@ -19,6 +20,7 @@ use crate::tui::text::color::Depth;
 pub struct Offscreen {
     state: State,
     terminal: Terminal<TestBackend>,
+    kept: Kept,
 }
 
 impl Offscreen {
@@ -30,7 +32,7 @@ impl Offscreen {
         let scene = OpenScene::open(path, Mode::Edit, &files::Options::default())?;
         let terminal =
             Terminal::new(TestBackend::new(width, height)).map_err(|error| Error::at("the screen", error))?;
-        Ok(Offscreen { state: State::new(scene, (width, height), Depth::True), terminal })
+        Ok(Offscreen { state: State::new(scene, (width, height), Depth::True), terminal, kept: Kept::default() })
     }
 
     /// Presses a key, by its name in the table, and draws the screen.
@@ -54,8 +56,8 @@ impl Offscreen {
     /// # Errors
     /// The screen cannot be drawn.
     pub fn draw(&mut self) -> Result<()> {
-        let Offscreen { state, terminal } = self;
-        terminal.draw(|frame| view::draw(frame, state)).map(drop).map_err(|error| Error::at("the screen", error))
+        let Offscreen { state, terminal, kept } = self;
+        terminal.draw(|frame| view::draw(frame, state, kept)).map(drop).map_err(|error| Error::at("the screen", error))
     }
 
     /// The text on the screen, one line per row.

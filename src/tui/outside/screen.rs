@@ -14,8 +14,8 @@ use std::path::PathBuf;
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
-/// How often to check whether a terminal that did not read does so again.
-const BEHIND: Duration = Duration::from_millis(20);
+/// How soon to check whether a terminal that did not read does so again: after as long as it has not, within these.
+const BEHIND: [Duration; 2] = [Duration::from_millis(1), Duration::from_millis(20)];
 
 impl Editor {
     /// Edits until the person leaves; returns the folder of the tutor, if it was open.
@@ -40,7 +40,7 @@ impl Editor {
     }
 
     fn draw(&mut self) -> Result<()> {
-        let (state, Some(screen)) = (&self.state, &mut self.screen) else { return Ok(()) };
+        let (state, kept, Some(screen)) = (&self.state, &mut self.kept, &mut self.screen) else { return Ok(()) };
         let failed = |e| Error::at("the terminal", e);
         if pace::is_behind() {
             Write::flush(screen.backend_mut()).map_err(failed)?;
@@ -52,7 +52,7 @@ impl Editor {
             self.throttle.wrote(state, begun.elapsed(), pace::given());
         }
         let begun = Instant::now();
-        screen.draw(|frame| view::draw(frame, state)).map_err(failed)?;
+        screen.draw(|frame| view::draw(frame, state, kept)).map_err(failed)?;
         self.state.drawn();
         let state = &self.state;
         match pace::is_behind() {
@@ -67,7 +67,7 @@ impl Editor {
         let script_goes_on = self.scripts_go_on();
         let patience = match self.state.play.playing {
             _ if script_goes_on => Duration::ZERO,
-            _ if pace::is_behind() => BEHIND,
+            _ if pace::is_behind() => self.drawn.map_or(BEHIND[1], |begun| begun.elapsed().clamp(BEHIND[0], BEHIND[1])),
             true => Duration::from_millis(33),
             false => self.throttle.patience(self.state.scene.patience()),
         };

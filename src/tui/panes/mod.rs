@@ -9,7 +9,7 @@ use ratatui::widgets::{Block, Clear, Widget};
 
 use super::text::color;
 use super::text::input::Text;
-use super::text::numbers::polar;
+use crate::base::maths;
 
 mod braille;
 mod columns;
@@ -18,6 +18,7 @@ pub mod field;
 mod hints;
 pub mod lesson;
 pub mod line;
+pub mod marks;
 pub mod palette;
 pub mod picture;
 pub mod popup;
@@ -71,7 +72,8 @@ pub fn typed(buffer: &mut Buffer, area: Rect, text: &Text, style: Style) -> Posi
 /// The nearest of eight arrows for the direction of a vector.
 pub fn arrow(vector: kurbo::Vec2) -> &'static str {
     const ARROWS: [&str; 8] = ["→", "↗", "↑", "↖", "←", "↙", "↓", "↘"];
-    ARROWS[(polar(vector).1 / 45.0).round().rem_euclid(8.0) as usize]
+    let degrees = maths::atan2(0.0 - vector.y, vector.x).to_degrees();
+    ARROWS[(degrees / 45.0).round().rem_euclid(8.0) as usize]
 }
 
 /// Clears a rectangle in the middle of the screen and frames it.

@@ -2,23 +2,23 @@
 //! and the cursor. Without colors each cell is a character of some darkness.
 
 use crate::tui::layout;
-use kurbo::{Point, Vec2};
+use kurbo::Point;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::{Color, Modifier, Style};
 
-use super::{arrow, write};
+use super::marks::{self, Canvas, Kept};
+use super::write;
 use crate::base::number::rounded;
 use crate::base::pointer::Pointer;
-use crate::layers::parts::marks::{Dot, Legend, Mark, Shape};
+use crate::layers::parts::marks::Legend;
 use crate::layers::parts::picking::Subject;
 use crate::render::overlay;
 use crate::render::part::Part;
-use crate::tui::graphics::clip::square;
 use crate::tui::graphics::{Protocol, TerminalPicture, viewport};
 use crate::tui::layout::picture;
 use crate::tui::state::painting::{self, Painting, Sees};
-use crate::tui::state::{Mode, Pane, State, place};
+use crate::tui::state::{Pane, State};
 use crate::tui::text::color;
 use crate::tui::text::color::Depth;
 use crate::tui::text::numbers::{polar, short};
@@ -66,7 +66,7 @@ fn lying(state: &State) -> String {
 }
 
 /// Draws the picture; the terminal's cursor is on the picture's cursor if the picture has the focus.
-pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+pub fn draw(state: &State, kept: &mut Kept, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     let Some(part) = picture::part(state).filter(|_| area.width > 0 && area.height > 0) else {
         write(buffer, area, 1, 0, "no picture yet", color::faint());
         return (state.cursor.focus == Pane::Picture).then(|| area.as_position());
@@ -77,7 +77,7 @@ pub fn draw(state: &State, area: Rect, buffer: &mut Buffer) -> Option<Position> 
                 buffer.cell_mut(at).into_iter().for_each(|there| there.clone_from(cell));
             }
         }
-        None => draw_blocks(state, &part, area, buffer),
+        None => draw_blocks(state, kept, &part, area, buffer),
     }
     let cursor = picture::cursor_cell(state, &part);
     let within = |cell: f64, cells: u16| cell.clamp(0.0, f64::from(cells - 1)) as u16;
@@ -123,7 +123,7 @@ fn pixels(state: &State, area: Rect) -> Option<&Buffer> {
 
 /// Replaces the pixels by half-blocks if something was drawn over them, because a picture that is sent as a whole would hide
 /// it. Kitty's placeholders are characters like others and can stay.
-pub fn give_way(state: &State, buffer: &mut Buffer) {
+pub fn give_way(state: &State, kept: &mut Kept, buffer: &mut Buffer) {
     let Some(area) = layout::picture_area(state).filter(|_| picture::protocol(state) != Protocol::Kitty) else {
         return;
     };
@@ -134,7 +134,7 @@ pub fn give_way(state: &State, buffer: &mut Buffer) {
         return;
     }
     let mut blocks = Buffer::empty(area);
-    draw_blocks(state, &part, area, &mut blocks);
+    draw_blocks(state, kept, &part, area, &mut blocks);
     for at in free {
         if let (Some(there), Some(cell)) = (buffer.cell_mut(at), blocks.cell(at)) {
             there.clone_from(cell);
@@ -142,24 +142,18 @@ pub fn give_way(state: &State, buffer: &mut Buffer) {
     }
 }
 
-fn draw_blocks(state: &State, part: &Part, area: Rect, buffer: &mut Buffer) {
+fn draw_blocks(state: &State, kept: &mut Kept, part: &Part, area: Rect, buffer: &mut Buffer) {
     // In half-blocks, whatever the protocol in use.
     let scale = part.scale * part.dots.0 as f64 / f64::from(area.width);
     let part = Part { scale, dots: (area.width.into(), usize::from(area.height) * 2), ..*part };
     if let Some(shown) = &state.picture.latest {
         draw_pixels(shown, &part, state.depth, area, buffer);
     }
-    draw_marks(state, &part, area, buffer);
-    let (x, half) = cell(&part, state.picture.cursor);
+    let canvas = Canvas { part, area, depth: state.depth };
+    marks::draw(state, kept, &canvas, buffer);
+    let (x, half) = canvas.cell(state.picture.cursor);
     let style = Style::new().fg(Color::Reset).bg(Color::Reset).add_modifier(Modifier::REVERSED);
     write(buffer, area, x as i32, half.div_euclid(2).max(0) as u16, "┼", style);
-}
-
-/// The column and the half row of a place in the picture.
-fn cell(part: &Part, at: Point) -> (i64, i64) {
-    let dot = part.dot_of(at);
-    let whole = |v: f64| v.floor().clamp(-1e9, 1e9) as i64;
-    (whole(dot.x), whole(dot.y))
 }
 
 fn draw_pixels(shown: &TerminalPicture, part: &Part, depth: Depth, area: Rect, buffer: &mut Buffer) {
@@ -190,85 +184,5 @@ fn both(upper: Option<[u8; 3]>, lower: Option<[u8; 3]>) -> [u8; 3] {
     match (upper, lower) {
         (Some(a), Some(b)) => std::array::from_fn(|i| ((u16::from(a[i]) + u16::from(b[i])) / 2) as u8),
         (one, other) => one.or(other).unwrap_or_default(),
-    }
-}
-
-/// Draws outlines, regions, curves, anchors and their jumps, the selected ones on top.
-fn draw_marks(state: &State, part: &Part, area: Rect, buffer: &mut Buffer) {
-    let synth = state.picture.synth.as_deref();
-    let mut marks = match state.picture.looking {
-        Some(looking) => vec![square(state.picture.cursor, looking.side)],
-        None if picture::sees(state) != Sees::Results => Vec::new(),
-        None => overlay::overlay(state.document().scene(), synth, &picture::overlays(state)),
-    };
-    marks.sort_by_key(|mark| mark.selected);
-    let over = state.picture.latest.iter().flat_map(|shown| &shown.over);
-    for mark in over.chain(&marks) {
-        draw_mark(mark, state.depth, part, area, buffer);
-    }
-    if let (Mode::Aim, Some(from)) = (&state.typing.mode, place::selected(state)) {
-        let style = Style::new().add_modifier(Modifier::BOLD);
-        line(from, state.picture.cursor, part, |x, half| put(buffer, area, x, half, "•", style));
-    }
-}
-
-fn draw_mark(mark: &Mark, depth: Depth, part: &Part, area: Rect, buffer: &mut Buffer) {
-    let [r, g, b, _] = mark.color();
-    let style = depth.color([r, g, b]).map_or(Style::new(), |ink| Style::new().fg(ink));
-    let style = if mark.selected { style.add_modifier(Modifier::BOLD) } else { style };
-    let glyph = mark.look.stroke;
-    match &mark.shape {
-        Shape::Cell(at, ..) => {
-            let (x, half) = cell(part, *at);
-            put(buffer, area, x, half, glyph, style);
-        }
-        Shape::Line { points, closed } => {
-            let last = points.last().filter(|_| *closed);
-            let from = last.into_iter().chain(points);
-            let to = points.iter().skip(usize::from(!closed));
-            for (&from, &to) in from.zip(to) {
-                line(from, to, part, |x, half| put(buffer, area, x, half, glyph, style));
-            }
-        }
-        Shape::Dot(at) => {
-            let glyph = match (mark.look.dot, mark.selected) {
-                (Dot::Disc, false) => "o",
-                (Dot::Disc, true) => "●",
-                (Dot::Square, false) => "□",
-                (Dot::Square, true) => "■",
-                (Dot::Diamond, false) => "◇",
-                (Dot::Diamond, true) => "◆",
-            };
-            let (x, half) = cell(part, *at);
-            put(buffer, area, x, half, glyph, style);
-        }
-        Shape::Arrow(from, to) => {
-            line(*from, *to, part, |x, half| put(buffer, area, x, half, glyph, style));
-            let (x, half) = cell(part, *to);
-            put(buffer, area, x, half, arrow(Vec2::new(to.x - from.x, to.y - from.y)), style);
-        }
-        Shape::Fill(_) | Shape::Label(..) => {}
-    }
-}
-
-/// Writes a glyph over the picture, keeping the color behind it.
-fn put(buffer: &mut Buffer, area: Rect, x: i64, half: i64, glyph: &str, style: Style) {
-    let y = half.div_euclid(2);
-    if (0..i64::from(area.width)).contains(&x) && (0..i64::from(area.height)).contains(&y) {
-        let at = Position::new(area.x + x as u16, area.y + y as u16);
-        if let Some(cell) = buffer.cell_mut(at) {
-            let ground = if cell.symbol() == "▀" && half.rem_euclid(2) == 0 { cell.fg } else { cell.bg };
-            cell.set_symbol(glyph).set_style(style.bg(ground));
-        }
-    }
-}
-
-/// Calls `put` for every half-block on a line.
-fn line(from: Point, to: Point, part: &Part, mut each: impl FnMut(i64, i64)) {
-    let Some((a, b)) = viewport::clipped(part.dot_of(from), part.dot_of(to), part.dots) else { return };
-    let steps = (b - a).hypot2().sqrt().ceil().max(1.0);
-    for i in 0..=steps as u32 {
-        let dot = a.lerp(b, f64::from(i) / steps);
-        each(dot.x.floor() as i64, dot.y.floor() as i64);
     }
 }

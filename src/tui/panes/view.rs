@@ -10,11 +10,12 @@ use ratatui::text::{Line, Text};
 use ratatui::widgets::{Block, Paragraph, Widget};
 
 use crate::tui::panes;
+use crate::tui::panes::marks::Kept;
 use crate::tui::state::{Mode, Pane, State};
 use crate::tui::text::color;
 
-/// Draws the screen.
-pub fn draw(frame: &mut Frame, state: &State) {
+/// Draws the screen, with what is kept from one drawing to the next.
+pub fn draw(frame: &mut Frame, state: &State, kept: &mut Kept) {
     let screen = frame.area();
     if !fits((screen.width, screen.height)) {
         return too_small(frame, state, screen);
@@ -36,7 +37,7 @@ pub fn draw(frame: &mut Frame, state: &State) {
         // The tree has the whole screen.
     } else if picture_in_middle(state, &areas) {
         let inner = pane(frame, state, middle(state, &areas), Pane::Picture, &panes::picture::title(state));
-        cursor = panes::picture::draw(state, inner, frame.buffer_mut()).or(cursor);
+        cursor = panes::picture::draw(state, kept, inner, frame.buffer_mut()).or(cursor);
     } else {
         let inner = pane(frame, state, areas.table, Pane::Table, &panes::table::title(state));
         cursor = panes::table::draw(state, inner, frame.buffer_mut()).or(cursor);
@@ -61,13 +62,13 @@ pub fn draw(frame: &mut Frame, state: &State) {
     }
     if let Some(picture) = areas.picture {
         let inner = pane(frame, state, picture, Pane::Picture, &panes::picture::title(state));
-        cursor = panes::picture::draw(state, inner, frame.buffer_mut()).or(cursor);
+        cursor = panes::picture::draw(state, kept, inner, frame.buffer_mut()).or(cursor);
     }
     legend(frame, state);
     panes::status::draw(state, areas.status, frame.buffer_mut());
     cursor = panes::line::draw(state, areas.line, frame.buffer_mut()).or(cursor);
     cursor = panes::popup::draw(state, screen, frame.buffer_mut()).or(cursor);
-    panes::picture::give_way(state, frame.buffer_mut());
+    panes::picture::give_way(state, kept, frame.buffer_mut());
     if let Some(cursor) = cursor {
         frame.set_cursor_position(cursor);
     }

@@ -14,6 +14,7 @@ use crate::base::clip::Clip;
 use crate::base::picture::Picture;
 use crate::layers::parts::materials::Materials;
 use crate::render;
+use crate::tui::panes::marks::Kept;
 use crate::tui::panes::view;
 use crate::tui::state::{Pane, State};
 
@@ -35,7 +36,7 @@ fn shown(node: &str) -> State {
 /// Whether the number in the row of this name is dimmed.
 fn dimmed(state: &State, name: &str) -> bool {
     let mut terminal = Terminal::new(TestBackend::new(state.size.0, state.size.1)).unwrap();
-    terminal.draw(|frame| view::draw(frame, state)).unwrap();
+    terminal.draw(|frame| view::draw(frame, state, &mut Kept::default())).unwrap();
     let buffer = terminal.backend().buffer();
     let mut rows = buffer.content().chunks(usize::from(state.size.0));
     let row = rows.find_map(|row| {

@@ -24,6 +24,7 @@ use crate::tui::commands::update::update;
 use crate::tui::events::{Effect, Event};
 use crate::tui::graphics::{Protocol, TerminalPicture, Wanted};
 use crate::tui::layout::picture;
+use crate::tui::panes::marks::Kept;
 use crate::tui::panes::view;
 use crate::tui::state::State;
 use crate::tui::text::color::Depth;
@@ -31,7 +32,7 @@ use crate::tui::text::color::Depth;
 /// The screen as cells.
 fn cells(state: &State) -> Buffer {
     let mut terminal = Terminal::new(TestBackend::new(state.size.0, state.size.1)).unwrap();
-    terminal.draw(|frame| view::draw(frame, state)).unwrap().buffer.clone()
+    terminal.draw(|frame| view::draw(frame, state, &mut Kept::default())).unwrap().buffer.clone()
 }
 
 #[test]

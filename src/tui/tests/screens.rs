@@ -15,6 +15,7 @@ use crate::tui::events::{Event, Synthesis};
 use crate::tui::graphics::TerminalPicture;
 use crate::tui::graphics::probed::Probed;
 use crate::tui::layout::picture;
+use crate::tui::panes::marks::Kept;
 use crate::tui::panes::view;
 use crate::tui::state::State;
 
@@ -79,7 +80,7 @@ pub fn see(state: &mut State) {
 /// The text of the screen, with the cursor's place below.
 pub fn screen(state: &State) -> String {
     let mut terminal = Terminal::new(TestBackend::new(state.size.0, state.size.1)).unwrap();
-    terminal.draw(|frame| view::draw(frame, state)).unwrap();
+    terminal.draw(|frame| view::draw(frame, state, &mut Kept::default())).unwrap();
     let cursor = terminal.get_cursor_position().unwrap();
     let buffer = terminal.backend().buffer();
     let mut text = String::new();

@@ -8,6 +8,7 @@ use super::support::{at, press, replayed, state, state_of};
 use super::{motion, zone};
 use crate::tui::commands::update::update;
 use crate::tui::events::{Effect, Event};
+use crate::tui::panes::marks::Kept;
 use crate::tui::panes::view;
 use crate::tui::state::{Mode, Pages, State};
 
@@ -19,7 +20,7 @@ fn said(state: &State) -> String {
 fn screen(state: &State) -> Vec<String> {
     let (width, height) = state.size;
     let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
-    terminal.draw(|frame| view::draw(frame, state)).unwrap();
+    terminal.draw(|frame| view::draw(frame, state, &mut Kept::default())).unwrap();
     let cells = terminal.backend().buffer().content().chunks(usize::from(width));
     cells.map(|row| row.iter().map(|cell| cell.symbol()).collect::<String>().trim_end().to_owned()).collect()
 }
