@@ -376,6 +376,9 @@ fn what_there_is_no_memory_for_is_left_out_where_that_is_told() {
     let told = |synth: &Synth| synth.lacks().iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
     let refused = made(1000, false).unwrap_err().to_string();
     assert!(refused.contains("make the pictures of its views smaller, or give --limit memory="), "{refused}");
+    // With what the message asks for it is made.
+    let asked = refused.split("memory=").nth(1).and_then(|text| text.split('M').next()?.parse::<u64>().ok());
+    assert!(refused.contains("needs up to ") && made(asked.unwrap() << 20, false).is_ok(), "{refused}");
     let nothing = made(1000, true).unwrap();
     assert!(
         told(&nothing).contains("are allowed: nothing of its views is shown (make the pictures"),

@@ -31,6 +31,8 @@ pub struct Share {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Short {
     wanted: u64,
+    /// Whether it may turn out that less is needed.
+    at_most: bool,
     taken: u64,
     most: u64,
 }
@@ -58,8 +60,13 @@ impl Budget {
         let sum = |taken: u64| taken.checked_add(bytes).filter(|&sum| sum <= account.most);
         match account.taken.fetch_update(Ordering::Relaxed, Ordering::Relaxed, sum) {
             Ok(_) => Ok(Share { account: Some(account.clone()), bytes }),
-            Err(taken) => Err(Short { wanted: bytes, taken, most: account.most }),
+            Err(taken) => Err(Short { wanted: bytes, at_most: false, taken, most: account.most }),
         }
+    }
+
+    /// Bytes that may still be taken.
+    pub fn left(&self) -> u64 {
+        self.0.as_ref().map_or(u64::MAX, |account| account.most.saturating_sub(self.taken()))
     }
 
     /// Bytes kept now.
@@ -92,6 +99,11 @@ impl Drop for Share {
 }
 
 impl Short {
+    /// The same where then up to so many bytes are needed.
+    pub fn then(self, bytes: u64) -> Short {
+        if bytes > self.wanted { Short { wanted: bytes, at_most: true, ..self } } else { self }
+    }
+
     /// As an error about a file or an option.
     pub fn at(self, place: impl Display) -> Error {
         Error::at(place, self.what()).cure(self.cure())
@@ -114,7 +126,9 @@ impl Short {
 
     fn what(self) -> String {
         let besides = if self.taken > 0 { format!(" besides {} in use", size(self.taken)) } else { String::new() };
-        format!("needs {} of memory{besides}, and at most {} are allowed", size(self.wanted), size(self.most))
+        let up_to = if self.at_most { "up to " } else { "" };
+        let [wanted, most] = [self.wanted, self.most].map(size);
+        format!("needs {up_to}{wanted} of memory{besides}, and at most {most} are allowed")
     }
 
     fn cure(self) -> String {

@@ -34,6 +34,20 @@ impl Progress {
     }
 }
 
+/// What watches over long work.
+#[derive(Clone, Copy)]
+pub struct Watch<'a> {
+    /// Whether it should end.
+    pub stopped: &'a (dyn Fn() -> bool + Sync),
+    /// Called with the index of each piece that is done.
+    pub done: &'a (dyn Fn(usize) + Sync),
+}
+
+impl Watch<'_> {
+    /// Nobody.
+    pub const NONE: Watch<'static> = Watch { stopped: &|| false, done: &|_| () };
+}
+
 impl fmt::Debug for Progress {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:?} of {:?}", self.done, self.all)

@@ -25,6 +25,7 @@ use super::space::fit;
 use super::timeline::{Timeline, Wrap};
 use crate::base::pixels::{Linear, Rgba};
 use crate::base::problem::Problem;
+use crate::base::progress::Watch;
 use crate::base::reduce::Reduced;
 
 /// What a layer is made with.
@@ -89,20 +90,21 @@ pub trait Ready: Any + Debug + Send + Sync {
     }
 
     /// What is known of the pictures with cameras that lie on it, one after the other, and of them all, as objects; with
-    /// `compare` also how well each comes back when it is drawn again from its own camera. `None` if it can have none.
-    fn lying(&self, _compare: bool) -> Option<Vec<Value>> {
+    /// `compare` also how well each comes back when it is drawn again from its own camera, one piece of work each. `None` if it can
+    /// have none.
+    fn lying(&self, _compare: Option<&Watch>) -> Option<Vec<Value>> {
         None
     }
 
     /// What is seen of its model at a scene time from around, as it is without anything drawn on it, in pictures of so many
     /// pixels a side: pictures with cameras that show what its surface does. `None` if it has no such pictures.
-    fn around(&self, _t: f64, _side_px: usize) -> Vec<Taken> {
+    fn around(&self, _t: f64, _side_px: usize, _watch: &Watch) -> Vec<Taken> {
         Vec::new()
     }
 
     /// What the camera of a picture that lies on it, by its index, sees of it without that picture; `None` if the picture does not
     /// count, or there is none.
-    fn guide(&self, _picture: usize) -> Option<Linear> {
+    fn guide(&self, _picture: usize, _watch: &Watch) -> Option<Linear> {
         None
     }
 

@@ -98,13 +98,13 @@ fn problems(args: &Args, context: &Context) -> Result<(Vec<Problem>, Vec<Problem
     let mut problems = document.warnings().to_vec();
     problems.extend(found);
     let is_broken = |problems: &[Problem]| problems.iter().any(|problem| problem.severity == Severity::Error);
+    // A frame needs memory beside what the layers take.
+    let room = if is_broken(&problems) { None } else { Some(room(scene, &materials)) };
+    problems.extend(room.iter().filter_map(|room| room.as_ref().err()).cloned());
     if !is_broken(&problems) {
         problems.extend(made(scene, &materials));
         context.check_cancelled()?;
     }
-    // A frame needs memory beside what the layers take.
-    let room = if is_broken(&problems) { None } else { Some(room(scene, &materials)) };
-    problems.extend(room.iter().filter_map(|room| room.as_ref().err()).cloned());
     let (broken, mut failed) = (is_broken(&problems), None);
     let loops = render::seams::warnings(scene, &materials, || {
         let made = (!broken).then(|| render::synth(scene, &materials, None));

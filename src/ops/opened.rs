@@ -2,10 +2,12 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
-use super::{Context, scene_options::SceneOptions};
+use super::{Context, Progress, scene_options::SceneOptions, watched};
 use crate::base::error::{Error, Result};
 use crate::base::problem::{Problem, Severity};
+use crate::base::progress;
 use crate::files::{self, materials};
 use crate::layers::parts::materials::Materials;
 use crate::render::{self, Synth, bands::Bands};
@@ -111,6 +113,21 @@ impl Opened {
     /// As [`render::synth`].
     pub fn synth(&self) -> Result<Synth> {
         render::synth(self.document.scene(), &self.materials, None).map_err(|problem| self.failed(problem))
+    }
+
+    /// The same, which tells how far it is.
+    ///
+    /// # Errors
+    /// As [`render::synth`].
+    pub fn synth_told(&self, messages: &mut dyn Progress) -> Result<Synth> {
+        let percent = Arc::new(AtomicUsize::new(0));
+        let done = percent.clone();
+        let tell = progress::Progress::new(move |percent| done.store(percent.into(), Ordering::Relaxed));
+        let materials = Materials { progress: Some(Arc::new(tell)), ..self.materials.clone() };
+        let synth = || render::synth(self.document.scene(), &materials, None);
+        let made =
+            watched::told(messages, ("percent of the synthesis", 100), || percent.load(Ordering::Relaxed), synth);
+        made.map_err(|problem| self.failed(problem))
     }
 
     /// The same for data passes alone.

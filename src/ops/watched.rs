@@ -6,7 +6,9 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::Duration;
 
-use super::Progress;
+use super::{Context, Progress};
+use crate::base::error::Result;
+use crate::base::progress::Watch;
 
 /// How often progress is shown.
 const EVERY: Duration = Duration::from_millis(200);
@@ -19,19 +21,47 @@ pub fn watched<T: Send>(
     total: usize,
     work: impl FnOnce(&(dyn Fn(usize) + Sync)) -> T + Send,
 ) -> T {
-    let done = AtomicUsize::new(0);
+    let done = &AtomicUsize::new(0);
+    let count = |steps| {
+        done.fetch_add(steps, Ordering::Relaxed);
+    };
+    told(messages, (what, total), || done.load(Ordering::Relaxed), || work(&count))
+}
+
+/// The same of work in so many pieces that is watched over: it ends if it is to be cancelled.
+///
+/// # Errors
+/// It was.
+pub fn in_pieces<T: Send>(
+    context: &mut Context,
+    what: &str,
+    total: usize,
+    work: impl FnOnce(&Watch) -> T + Send,
+) -> Result<T> {
+    let cancel = context.cancel.clone();
+    let stopped = || cancel.load(Ordering::Relaxed);
+    let messages = &mut *context.messages;
+    let made = watched(messages, what, total, |done| work(&Watch { stopped: &stopped, done: &|_| done(1) }));
+    context.check_cancelled()?;
+    Ok(made)
+}
+
+/// The same of work that counts what it has done elsewhere.
+pub fn told<T: Send>(
+    messages: &mut dyn Progress,
+    (what, total): (&str, usize),
+    done: impl Fn() -> usize,
+    work: impl FnOnce() -> T + Send,
+) -> T {
     thread::scope(|scope| {
         let (working, end) = mpsc::channel::<()>();
-        let done = &done;
         let worker = scope.spawn(move || {
             // Dropped with the end of the work.
             let _working = working;
-            work(&|steps| {
-                done.fetch_add(steps, Ordering::Relaxed);
-            })
+            work()
         });
         while end.recv_timeout(EVERY) == Err(RecvTimeoutError::Timeout) {
-            let done = done.load(Ordering::Relaxed);
+            let done = done();
             if done < total {
                 messages.step(what, done as u64, total as u64);
             }

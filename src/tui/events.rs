@@ -8,6 +8,7 @@ use super::graphics::TerminalPicture;
 use super::graphics::counts::Counts;
 use super::graphics::probed::Probed;
 use crate::layers::space::camera::Camera;
+use crate::ops::views::paint;
 use crate::preview::editor;
 use crate::render::Synth;
 use crate::scene::{Document, Edit, Scene};
@@ -46,6 +47,8 @@ pub enum Event {
     Progress(String),
     /// Long work has ended, with its last message.
     Done(Result<String, String>),
+    /// What is to be painted on is drawn, or why it is not.
+    Drawn(Box<Result<(paint::Wanted, paint::Drawn), String>>),
     /// A program that rows were sent through has ended: what it gave back, or why there is nothing.
     Piped(Result<String, String>),
     /// A save has ended.
@@ -78,6 +81,17 @@ pub struct Synthesis {
     pub longest: Vec<(String, f64)>,
     /// A warning about the scene's pictures.
     pub warning: Option<Problem>,
+}
+
+/// What is to be drawn to paint on it, of what is seen of a scene.
+#[derive(Clone, Debug)]
+pub struct ToDraw {
+    /// What is wanted.
+    pub wanted: paint::Wanted,
+    /// The scene.
+    pub document: Document,
+    /// The same, ready for frames.
+    pub synth: Arc<Synth>,
 }
 
 /// A change of the document, as it is sent to windows.
@@ -135,6 +149,8 @@ pub enum Effect {
     Compare,
     /// What is seen in place of what the camera sees has changed.
     Sight,
+    /// Draw what is to be painted on.
+    Draw(Box<ToDraw>),
     /// Send a table through a program of the person's.
     Pipe(String, String),
     /// Look for the files that a path could become.

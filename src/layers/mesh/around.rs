@@ -6,6 +6,7 @@ use super::frame::MeshAt;
 use super::pose::{Bend, Pose};
 use super::synth::Synth;
 use crate::base::pixels::Linear;
+use crate::base::progress::Watch;
 use crate::base::{geometry, number};
 use crate::layers::parts::moment::Moment;
 use crate::layers::parts::shots::{SeenFrom, Taken};
@@ -35,14 +36,15 @@ const FOV: f64 = 30.0;
 const UNITS: f64 = 1e5;
 
 /// What is seen of a mesh at scene time `t`, unbent and without strokes, but in the light that falls on it in its pose: pictures
-/// of so many pixels a side, in the model's coordinates. One that shows nothing is left out.
-pub fn around(synth: &Synth, t: f64, side_px: usize) -> Vec<Taken> {
+/// of so many pixels a side, in the model's coordinates. One that shows nothing is left out. Each is one piece of work.
+pub fn around(synth: &Synth, t: f64, side_px: usize, watch: &Watch) -> Vec<Taken> {
     let pose = Pose { bend: Bend::default(), ..synth.pose.clone() };
     let own = Synth { pose, strokes: None, ..synth.clone() };
     let size_px = (side_px, side_px);
     let unseen = Moment { t, size_px, eye: None, left_out: 0, magnified: 1 };
     let placed = own.pose.at(own.time(&unseen));
-    let taken = WAYS.into_iter().filter_map(|(name, back)| {
+    let ways = WAYS.into_iter().enumerate().take_while(|_| !(watch.stopped)());
+    let taken = ways.filter_map(|(number, (name, back))| {
         let back = DVec3::from(back).normalize_or_zero();
         let up = if back.y.abs() < 1.0 { DVec3::Y } else { DVec3::Z };
         let [position, target] = fit(&|ways| own.mesh.reach(ways), [back, up], FOV, size_px)?;
@@ -53,6 +55,7 @@ pub fn around(synth: &Synth, t: f64, side_px: usize) -> Vec<Taken> {
         let eye = Eye::new([world(position), world(target), placed.turn * up], FOV, size_px);
         let moment = Moment { eye: Some(eye), ..unseen };
         let picture = Linear::from_cells(side_px, side_px, MeshAt::new(&own, &moment).bare());
+        (watch.done)(number);
         let up = Some(up).filter(|up| *up != DVec3::Y);
         Some(Taken { name, from: SeenFrom::Standing { position, target, up, fov: Some(FOV) }, picture })
     });

@@ -13,6 +13,7 @@ use super::{around, marks, plan, probe, unseen};
 use crate::base::geometry;
 use crate::base::pixels::Linear;
 use crate::base::problem::Problem;
+use crate::base::progress::Watch;
 use crate::base::reduce::Reduced;
 use crate::layers::parts::marks::{Mark, View};
 use crate::layers::parts::moment::Moment;
@@ -44,16 +45,16 @@ impl Ready for Synth {
         self.has_strokes() || self.surface.takes_long()
     }
 
-    fn lying(&self, compare: bool) -> Option<Vec<Value>> {
+    fn lying(&self, compare: Option<&Watch>) -> Option<Vec<Value>> {
         self.surface.lying(compare)
     }
 
-    fn around(&self, t: f64, side_px: usize) -> Vec<Taken> {
-        around::around(self, t, side_px)
+    fn around(&self, t: f64, side_px: usize, watch: &Watch) -> Vec<Taken> {
+        around::around(self, t, side_px, watch)
     }
 
-    fn guide(&self, picture: usize) -> Option<Linear> {
-        self.surface.guide(picture)
+    fn guide(&self, picture: usize, watch: &Watch) -> Option<Linear> {
+        self.surface.guide(picture, watch)
     }
 
     fn lacks(&self) -> Option<Problem> {

@@ -12,6 +12,7 @@ use crate::base::error::Error;
 use crate::base::mesh::Mesh;
 use crate::base::pixels::{Linear, Rgba};
 use crate::base::problem::Problem;
+use crate::base::progress::Watch;
 use crate::base::reduce::Reduced;
 use crate::layers::parts::bundle::{Form, Sink};
 use crate::layers::parts::marks::{self, Mark};
@@ -111,12 +112,12 @@ pub trait ReadySurface: Any + Debug + Send + Sync {
     }
 
     /// See `Ready::lying`.
-    fn lying(&self, _compare: bool) -> Option<Vec<Value>> {
+    fn lying(&self, _compare: Option<&Watch>) -> Option<Vec<Value>> {
         None
     }
 
     /// See `Ready::guide`.
-    fn guide(&self, _picture: usize) -> Option<Linear> {
+    fn guide(&self, _picture: usize, _watch: &Watch) -> Option<Linear> {
         None
     }
 

@@ -232,15 +232,14 @@ struct Renderer<'a> {
 
 impl<'a> Renderer<'a> {
     fn new(args: &Args, opened: &'a Opened, size: (usize, usize), frames: usize) -> Result<Self> {
-        let bands = match frames == 1 && !args.gpu {
-            false => None,
-            true => Some(opened.bands(args.samples)?).filter(|bands| bands.size() == size),
-        };
-        let band = if bands.is_some() { Bands::PIXELS } else { cpu::BAND };
         let own = crate::render::frame_size(opened.document.scene(), &opened.materials);
+        let in_bands = frames == 1 && !args.gpu && own == size;
+        let band = if in_bands { Bands::PIXELS } else { cpu::BAND };
         let place = args.size.as_ref().map_or("frames".to_owned(), |text| format!("--size {text}"));
         let bytes = frame_bytes(own, size, args.samples as usize, band);
+        // Before what is made of the scene, so that where that lacks memory it is told how much all of it needs.
         let share = opened.materials.budget.take(bytes, &place)?;
+        let bands = in_bands.then(|| opened.bands(args.samples)).transpose()?;
         let samples = match (&bands, args.samples) {
             (Some(_), _) => Vec::new(),
             (None, 1) => vec![opened.synth()?],

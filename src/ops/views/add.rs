@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 
-use super::base::Base;
+use super::base::{Base, MOST};
 use super::beside::Beside;
 use super::feather;
 use crate::base::error::Result;
@@ -13,6 +13,7 @@ use crate::files::{Limits, disk, paths, picture};
 use crate::layers::parts::shots::{Feeds, SeenFrom};
 use crate::ops::opened::Unloaded;
 use crate::ops::scene_options::{RecoveryOptions, SceneOptions};
+use crate::ops::watched::in_pieces;
 use crate::ops::{Context, set};
 use crate::scene::Document;
 use crate::scene::shots::{self, Image, Picture};
@@ -107,7 +108,10 @@ fn base(args: &Args, context: &mut Context) -> Result<Base> {
     match shots::layer(&unloaded.document, args.layer.as_deref()) {
         Ok(layer) if shots::replaces(&unloaded.document, layer) => {
             let opened = unloaded.load(context)?;
-            Base::new(&opened.document, &opened.synth()?, (layer, 0.0), &args.name)
+            let synth = opened.synth_told(&mut *context.messages)?;
+            in_pieces(context, "picture", MOST, |watch| {
+                Base::new(&opened.document, &synth, (layer, 0.0), &args.name, watch)
+            })?
         }
         _ => Ok(Base::default()),
     }

@@ -28,7 +28,7 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
     set::refuse_input(&args.scene)?;
     let opened = Opened::new(&args.scene, &args.reading, context)?;
     let scene = opened.document.scene();
-    let synth = opened.synth()?;
+    let synth = opened.synth_told(&mut *context.messages)?;
     let layers = scene.layers.iter().map(|layer| layer.technique().name()).zip(&synth.layers).enumerate();
     let mut named = layers.filter(|(_, (name, _))| args.layer.as_deref().is_none_or(|layer| layer == *name));
     let found = named.find_map(|(i, (_, ready))| Some((i, ready.balanced()?)));

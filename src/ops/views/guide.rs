@@ -14,6 +14,7 @@ use crate::files::{Options, disk, outputs, paths, picture, write};
 use crate::layers::parts::shots::Lying;
 use crate::ops::opened::Unloaded;
 use crate::ops::scene_options::SceneOptions;
+use crate::ops::watched::in_pieces;
 use crate::ops::writing::Replacing;
 use crate::ops::{Context, set};
 use crate::render;
@@ -58,11 +59,11 @@ pub fn run(args: Args, context: &mut Context) -> Result<()> {
         let hint = hint.unwrap_or_else(|| "none lies there yet: plica views add lays one".into());
         wrong(format!("there is no view {} ({hint})", quoted(&args.name)))
     })?;
-    let drawn = opened.synth()?.layers[layer].guide(index);
+    let synth = opened.synth_told(&mut *context.messages)?;
+    let drawn = in_pieces(context, "view", lying.len(), |watch| synth.layers[layer].guide(index, watch))?;
     let drawn =
         drawn.ok_or_else(|| wrong(format!("{} does not count", quoted(&args.name))).cure("set active to true"))?;
     let frame = render::cpu::finish(&drawn);
-    context.check_cancelled()?;
     if let Some(place) = place {
         let mut draft = DraftFile::create(&place)?;
         let name = place.path().display().to_string();

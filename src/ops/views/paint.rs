@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 
-use super::base::Base;
+use super::base::{Base, MOST};
 use super::beside::{FOLDER, file};
 use crate::base::error::{Error, Result};
 use crate::base::geometry;
 use crate::base::problem::Problem;
+use crate::base::progress::Watch;
 use crate::export::still;
 use crate::files::{disk, write};
 use crate::layers::parts::pass::SHADE;
@@ -65,47 +66,109 @@ fn short(at: DVec3) -> DVec3 {
     geometry::rounded(at, 6)
 }
 
-/// Writes what is seen twice beside the scene, to be painted over and to be told apart from, and lays the first on the layer.
-/// Returns the edit and the picture to paint on.
-///
-/// # Errors
-/// The name is taken or cannot name a file, or nothing can be written.
-pub fn begin(
-    (scene, document): (&Path, &Document),
-    synth: &Synth,
-    sight: &Standpoint,
-    (name, kind): (&str, Option<&str>),
-) -> Result<(Applied, PathBuf)> {
-    let wrong = |what: &str| Error::at(name, what).cure("choose another name");
-    if name.contains(['/', '\\']) || name.starts_with('.') {
-        return Err(wrong("is no name for a file"));
+/// A view that is to be painted over what is seen of a layer.
+#[derive(Clone, Debug)]
+pub struct Wanted {
+    /// What it is called.
+    pub name: String,
+    /// What it feeds.
+    kind: String,
+    sight: Standpoint,
+    from: SeenFrom,
+    /// The layer's name, by which it is found again.
+    layer: String,
+    /// Whether pictures that keep its look come with it.
+    replaces: bool,
+}
+
+/// What is to be painted over, and what comes with it.
+#[derive(Debug)]
+pub struct Drawn {
+    png: Vec<u8>,
+    base: Base,
+}
+
+impl Wanted {
+    /// What is to be added, by its name and what it feeds, to the scene at a path.
+    ///
+    /// # Errors
+    /// The name is taken or cannot name a file, or nothing is seen.
+    pub fn new(
+        (scene, document): (&Path, &Document),
+        sight: Standpoint,
+        (name, kind): (&str, Option<&str>),
+    ) -> Result<Wanted> {
+        if name.contains(['/', '\\']) || name.starts_with('.') {
+            return Err(wrong(name, "is no name for a file"));
+        }
+        let nothing = || Error::at(name, "the layer has no size, or nothing is seen of it");
+        let from = sight.of_model(document).ok_or_else(nothing)?;
+        let layer = document.scene().layers.get(sight.layer).map_or("", |layer| layer.technique().name()).to_owned();
+        let (name, kind) = (name.to_owned(), kind.unwrap_or(Feeds::Dependent.word()).to_owned());
+        let wanted = Wanted { name, kind, from, layer, replaces: shots::replaces(document, sight.layer), sight };
+        wanted.applied((scene, document), Vec::new())?;
+        Ok(wanted)
     }
-    let from =
-        sight.of_model(document).ok_or_else(|| Error::at(name, "the layer has no size, or nothing is seen of it"))?;
-    let picture = Picture {
-        name: name.to_owned(),
-        image: Image::File(file(name, false)),
-        from,
-        kind: Some(kind.unwrap_or(Feeds::Dependent.word()).to_owned()),
-        feather_px: 0.0,
-        edge_px: 0.0,
-        guide: Some(file(name, true)),
-    };
-    let base = Base::new(document, synth, (sight.layer, sight.time), name)?;
-    // Checked before anything is written.
-    let applied =
-        shots::add(document, sight.layer, picture, base.pictures.clone()).map_err(|why| Error::at(name, why))?;
-    document.apply(&applied.edit).map_err(|problems| refused(name, &problems))?;
-    let folder = disk::folder_of(scene);
-    let (own, guide) = (file(name, false), file(name, true));
-    if let Some(there) = [&own, &guide].into_iter().find(|file| folder.join(file).symlink_metadata().is_ok()) {
-        return Err(wrong(&format!("{there} is there already")));
+
+    /// How many pieces of work it is to draw it.
+    pub fn pieces(&self) -> usize {
+        1 + if self.replaces { MOST } else { 0 }
     }
-    let png = sight.png(synth)?;
-    base.write(scene)?;
-    write::put_into(folder, &guide, &png)?;
-    write::put_into(folder, &own, &png)?;
-    Ok((applied, folder.join(own)))
+
+    /// Draws what is seen, and what keeps the look of the surface.
+    ///
+    /// # Errors
+    /// It cannot be packed.
+    pub fn draw(&self, document: &Document, synth: &Synth, watch: &Watch) -> Result<Drawn> {
+        let png = self.sight.png(synth)?;
+        (watch.done)(0);
+        let base = Base::new(document, synth, (self.sight.layer, self.sight.time), &self.name, watch)?;
+        Ok(Drawn { png, base })
+    }
+
+    /// Writes what is seen twice beside the scene, to be painted over and to be told apart from, and lays the first on the layer.
+    /// Returns the layer, the edit, and the picture to paint on.
+    ///
+    /// # Errors
+    /// As [`Wanted::new`], or nothing can be written.
+    pub fn lay(&self, (scene, document): (&Path, &Document), drawn: &Drawn) -> Result<(usize, Applied, PathBuf)> {
+        let (layer, applied) = self.applied((scene, document), drawn.base.pictures.clone())?;
+        let (folder, own) = (disk::folder_of(scene), file(&self.name, false));
+        drawn.base.write(scene)?;
+        write::put_into(folder, &file(&self.name, true), &drawn.png)?;
+        write::put_into(folder, &own, &drawn.png)?;
+        Ok((layer, applied, folder.join(own)))
+    }
+
+    /// The layer as it is in a document now, and the edit; everything is checked before anything is written.
+    fn applied(&self, (scene, document): (&Path, &Document), base: Vec<Picture>) -> Result<(usize, Applied)> {
+        let name = &self.name;
+        let layer = shots::layer(document, Some(&self.layer)).map_err(|why| Error::at(name, why))?;
+        if shots::replaces(document, layer) != self.replaces {
+            return Err(Error::at(name, "the surface has become another meanwhile").cure("add it again"));
+        }
+        let [own, guide] = [false, true].map(|guide| file(name, guide));
+        let picture = Picture {
+            name: name.clone(),
+            image: Image::File(own.clone()),
+            from: self.from,
+            kind: Some(self.kind.clone()),
+            feather_px: 0.0,
+            edge_px: 0.0,
+            guide: Some(guide.clone()),
+        };
+        let applied = shots::add(document, layer, picture, base).map_err(|why| Error::at(name, why))?;
+        document.apply(&applied.edit).map_err(|problems| refused(name, &problems))?;
+        let folder = disk::folder_of(scene);
+        if let Some(there) = [&own, &guide].into_iter().find(|file| folder.join(file).symlink_metadata().is_ok()) {
+            return Err(wrong(name, &format!("{there} is there already")));
+        }
+        Ok((layer, applied))
+    }
+}
+
+fn wrong(name: &str, what: &str) -> Error {
+    Error::at(name, what).cure("choose another name")
 }
 
 fn refused(name: &str, problems: &[Problem]) -> Error {

@@ -13,6 +13,7 @@ use crate::ops::Context;
 use crate::ops::opened::Opened;
 use crate::ops::scene_options::SceneOptions;
 use crate::ops::sprites::none;
+use crate::ops::watched::in_pieces;
 use crate::scene::Scene;
 
 /// What is listed.
@@ -44,13 +45,16 @@ pub fn run(args: &Listing, context: &mut Context) -> Result<()> {
     let scene = args.scene.as_ref().ok_or_else(|| Error::Usage("name a scene".into()))?;
     let opened = Opened::new(scene, &args.options, context)?;
     let scene = opened.document.scene();
-    let synth = opened.synth()?;
+    let synth = opened.synth_told(&mut *context.messages)?;
     let layers = scene.layers.iter().map(|layer| layer.technique().name()).zip(&synth.layers).enumerate();
     let named = layers.filter(|(_, (name, _))| args.layer.as_deref().is_none_or(|layer| layer == *name));
     let mut any = false;
     for (layer, (name, ready)) in named {
-        context.check_cancelled()?;
-        let Some(rows) = ready.lying(args.compare) else { continue };
+        let rows = match args.compare {
+            true => in_pieces(context, "view", count(scene, layer), |watch| ready.lying(Some(watch)))?,
+            false => ready.lying(None),
+        };
+        let Some(rows) = rows else { continue };
         let names = rows.iter().filter_map(|row| row["view"].as_str());
         let width = names.map(|name| name.chars().count()).fold(LEAST_WIDTH, usize::max);
         if !args.json {
@@ -66,6 +70,12 @@ pub fn run(args: &Listing, context: &mut Context) -> Result<()> {
         odd.iter().for_each(|problem| context.messages.say(&problem.to_string()));
     }
     if any { Ok(()) } else { Err(none(scene, args.layer.as_deref(), "views")) }
+}
+
+/// How many pictures lie on a layer.
+pub fn count(scene: &Scene, layer: usize) -> usize {
+    let lying = scene.layers.get(layer).and_then(|layer| layer.technique().lying());
+    lying.map_or(0, |lying| lying.len())
 }
 
 /// What is odd about how pictures lie on a layer, as far as the files that it names tell.

@@ -131,6 +131,7 @@ impl App {
 
     fn show(&mut self, event_loop: &ActiveEventLoop, ready: Ready, frames: Frames) {
         self.hurry.changed(Instant::now());
+        self.state.see(ready.sight.clone());
         self.load(&ready);
         self.come_back();
         // A window that opened without a picture stays as it is until there is one.
@@ -138,10 +139,6 @@ impl App {
         let Ready { document, scene, synth, marks, .. } = ready;
         self.shown = Some(Show { document, scene, synth, frames, coarsest: 1, marks });
         self.state.otherwise = ready.otherwise;
-        // One looks round the cameras from elsewhere than at the result.
-        if std::mem::replace(&mut self.state.selects, ready.selects) != ready.selects {
-            self.state.look_from(None);
-        }
         self.state.words.follow_scene(ready.problems);
         self.owed = Some(ToEditor::Ack { revision: ready.revision, synth_ms: ready.synth_ms });
         self.select(self.state.selection.clone());

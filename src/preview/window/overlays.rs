@@ -4,6 +4,7 @@ use super::state::State;
 use crate::base::maths::pow;
 use crate::layers::parts::marks::{Overlay, View, When};
 use crate::render::overlay::{self, overlays};
+use crate::render::sight::Sight;
 
 /// An arrow of the vector field stands about every so many logical pixels of the screen, unless keys change it, by so many
 /// times twice or half.
@@ -46,7 +47,9 @@ impl State {
 
     /// The overlays that are shown, no denser than stays legible on the screen.
     fn view(&self, wanted: impl Fn(When) -> bool) -> View {
-        let is_on = |overlay: &Overlay| self.shows(overlay.name) || self.selects && overlay.selects;
+        let is_on = |overlay: &Overlay| {
+            self.shows(overlay.name) || self.sight.as_ref().is_some_and(Sight::selects) && overlay.selects
+        };
         let shown = overlays().filter(|overlay| wanted(overlay.when) && is_on(overlay));
         View {
             shown: shown.map(|overlay| overlay.name).collect(),

@@ -16,6 +16,7 @@ use crate::layers::space::camera::Camera;
 use crate::layers::space::fit::Ball;
 use crate::layers::timeline::Timeline;
 use crate::preview::views::Switches;
+use crate::render::sight::Sight;
 use crate::scene::grips::Grip;
 
 /// Height of the bar, in logical pixels.
@@ -94,8 +95,10 @@ pub struct State {
     pub selected: Option<String>,
     /// That not all of the scene is shown, or something in its place.
     pub otherwise: Option<String>,
-    /// Whether the cameras of pictures are seen, to select one of them.
-    pub selects: bool,
+    /// What is seen in place of what the scene's camera sees.
+    pub sight: Option<Sight>,
+    /// Where the result is looked at from meanwhile, if that is not where the scene's camera does.
+    pub aside: Option<OwnView>,
     /// Frames a second, while it plays.
     pub fps: Option<f64>,
     /// Frames of the scene that were not shown since it plays, though whole frames are to be.
@@ -156,7 +159,8 @@ impl Default for State {
             under: None,
             selected: None,
             otherwise: None,
-            selects: false,
+            sight: None,
+            aside: None,
             fps: None,
             dropped: 0,
             thin: Thin::default(),

@@ -9,6 +9,7 @@ use crate::layers::space::camera::Camera;
 use crate::layers::space::eye::NEAR_M;
 use crate::layers::space::fit::Ball;
 use crate::render;
+use crate::render::sight::Sight;
 
 /// A key turns by this, in degrees.
 const TURN_DEGREES: f64 = 5.0;
@@ -32,9 +33,25 @@ impl State {
         self.own.map(|own| own.camera())
     }
 
-    /// Looks from there, by a view of its own, or without by the scene's camera.
+    /// Looks at the result from there, by a view of its own, or without by the scene's camera; once it is seen again.
     pub fn look_from(&mut self, camera: Option<&Camera>) {
-        self.own = camera.filter(|_| self.camera.is_some()).map(|camera| OwnView::of(camera, 0.0));
+        let own = camera.map(|camera| OwnView::of(camera, 0.0));
+        match self.sight {
+            None => self.own = own.filter(|_| self.camera.is_some()),
+            Some(_) => self.aside = own,
+        }
+    }
+
+    /// Takes what is seen in place of the result. One looks round cameras from elsewhere than at that, and at that again from where
+    /// one did.
+    pub fn see(&mut self, sight: Option<Sight>) {
+        match (&self.sight, &sight) {
+            (None, Some(_)) => self.aside = self.own.take(),
+            (Some(_), None) => self.own = self.aside.take(),
+            (Some(before), Some(now)) if before.selects() != now.selects() => self.own = None,
+            _ => {}
+        }
+        self.sight = sight;
     }
 
     /// Changes the window's own view, which begins as the scene's.
@@ -211,6 +228,36 @@ mod tests {
         assert_eq!(state.own_camera(), None);
         state.look_from(Some(&other));
         state.take_camera(None, None);
+        assert_eq!(state.own_camera(), None);
+    }
+
+    #[test]
+    fn the_result_is_seen_again_from_where_it_was() {
+        let mut state = State::for_tests();
+        state.take_camera(Some(&Camera::default()), None);
+        let from = |x: f64| Camera { position: [x, 2.0, 3.0], ..Camera::default() };
+        let select = || Some(Sight::From(Box::default()));
+        let painting = || Some(Sight::Painting { layer: 0, picture: 0, share: 0.5 });
+        state.look_from(Some(&from(1.0)));
+        for (sight, looks, own) in [
+            (select(), None, None),
+            // It is for the result.
+            (select(), Some(2.0), None),
+            (painting(), None, None),
+            (None, None, Some(2.0)),
+            (None, Some(3.0), Some(3.0)),
+            (painting(), Some(4.0), None),
+            (None, None, Some(4.0)),
+        ] {
+            state.see(sight);
+            looks.into_iter().for_each(|x| state.look_from(Some(&from(x))));
+            assert_eq!(state.own_camera(), own.map(from), "{:?}", state.sight);
+        }
+        state.see(select());
+        state.steer("orbit-left");
+        state.see(Some(Sight::From(Box::new(from(9.0)))));
+        assert!(state.own_camera().is_some(), "one goes on looking round the cameras");
+        state.see(painting());
         assert_eq!(state.own_camera(), None);
     }
 }

@@ -81,8 +81,8 @@ pub struct Ready {
     pub otherwise: Option<String>,
     /// Marks over it beside those of the overlays.
     pub marks: Vec<Mark>,
-    /// Whether the cameras of pictures are seen, to select one of them.
-    pub selects: bool,
+    /// What is seen in place of what the scene's camera sees.
+    pub sight: Option<Sight>,
 }
 
 /// A scene whose textures are on the GPU.
@@ -299,9 +299,9 @@ fn ready(job: Job, scene: Arc<Scene>, synth: Synth, (synth_ms, problems): (f64, 
     let Job { document, revision, how } = job;
     let around = Ball::around(&|ways| render::reach(&synth.layers, TIMES, ways));
     let otherwise = otherwise(&how, &scene);
-    let selects = how.sight.as_ref().is_some_and(Sight::selects);
+    let sight = how.sight.clone();
     let (scene, synth, marks) = how.seen(scene, synth);
-    Ready { document, scene, synth, around, revision, synth_ms, problems, otherwise, marks, selects }
+    Ready { document, scene, synth, around, revision, synth_ms, problems, otherwise, marks, sight }
 }
 
 /// In words, that not all of a scene is shown, or something in its place.

@@ -35,7 +35,8 @@ const STEP: f64 = 0.125;
 fn layout(state: &mut State, call: &Call) -> Done {
     if call.text == "usual" {
         state.picture.painting = None;
-        return shown(state);
+        picture::settle(state);
+        return Ok(());
     }
     let (layer, index, name) =
         painting::current(state).ok_or("no picture lies on a mesh yet: :views add NAME lays one")?;
@@ -76,7 +77,8 @@ fn layout(state: &mut State, call: &Call) -> Done {
     if to.sees == Sees::Painting && !is_there {
         state.say(format!("{} is shown once it is active and the picture is made", plain(&name)));
     }
-    shown(state)
+    picture::settle(state);
+    Ok(())
 }
 
 fn sphere(state: &mut State, call: &Call) -> Done {
@@ -119,11 +121,4 @@ fn round(list: &[Value], value: &Value) -> usize {
         from.distance(new) + new.distance(to) - from.distance(to)
     };
     (0..list.len()).min_by(|a, b| longer(*a).total_cmp(&longer(*b))).map_or(0, |k| k + 1)
-}
-
-/// Shows what is to be seen now.
-fn shown(state: &mut State) -> Done {
-    painting::follow(state);
-    picture::settle(state);
-    Ok(())
 }

@@ -56,7 +56,9 @@ fn cursor(state: &mut State, call: &Call) -> Done {
 
 fn placed(state: &mut State, call: &Call) -> Done {
     if picture::sees(state) != Sees::Results {
-        return Err("things are placed in the results: :layout results shows them".into());
+        return Err(
+            "things are placed in the results (:layout results), and points of views in select (:layout select)".into(),
+        );
     }
     match call.text {
         "add" => {

@@ -10,12 +10,12 @@ use crate::tui::text::plain;
 use crate::tui::text::said::quoted;
 use ratatui::layout::Position;
 
-use super::{camera, conflicts, picture, piping, tutor};
+use super::{camera, conflicts, picture, piping, tutor, views};
 use crate::preview::editor::{self, Asked};
 use crate::preview::wire::message::{Gesture, ToEditor};
 use crate::tui::commands;
 use crate::tui::document::tree;
-use crate::tui::keys::Meaning;
+use crate::tui::keys::{self, Meaning};
 use crate::tui::layout::first_row;
 use crate::tui::state::{Mode, Pages, Pane, State, looking, painting};
 
@@ -75,6 +75,7 @@ fn handle(state: &mut State, event: Event) {
             }
             report(state, result);
         }
+        Event::Drawn(result) => views::drawn(state, *result),
         Event::Piped(result) => piping::piped(state, &commands::TABLE, result),
         Event::Saved(result) => {
             if state.scene.is_saved() {
@@ -304,9 +305,22 @@ fn unbound(state: &mut State, key: &str, pressed: &str) {
         Mode::Normal if pressed.contains(' ') && key == "Esc" => {}
         _ if state.is_small() => state.complain(TOO_SMALL),
         Mode::Aim => state.complain("aiming: only the cursor, Enter, Esc, : and ? act"),
-        Mode::Normal => state.complain(format!("{pressed} is not a key here (? shows the keys)")),
+        Mode::Normal => {
+            let elsewhere =
+                elsewhere(state, pressed).map(|context| format!(", but of the {context}")).unwrap_or_default();
+            state.complain(format!("{pressed} is not a key here{elsewhere} (? shows the keys)"));
+        }
         Mode::Entry(_) | Mode::Line(_) | Mode::Palette(_) | Mode::Choice(_) | Mode::Pages(_) => {}
     }
+}
+
+/// The context, narrower than that of the pane, in which it is a key.
+fn elsewhere(state: &State, pressed: &str) -> Option<&'static str> {
+    let here = contexts(state);
+    let is_narrower =
+        |other: &&str| here.iter().any(|own| other.strip_prefix(own).is_some_and(|rest| rest.starts_with(", ")));
+    let narrower = keys::contexts().into_iter().filter(is_narrower);
+    narrower.into_iter().find(|context| !matches!(state.keymap.find(&[context], pressed), Meaning::Nothing))
 }
 
 /// Runs a command of a window.

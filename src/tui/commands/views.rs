@@ -13,9 +13,10 @@ use crate::base::problem::{nearest, quoted};
 use crate::layers::parts::shots::{SeenFrom, Shot};
 use crate::layers::space::camera::Camera;
 use crate::layers::space::fit;
-use crate::ops::views::paint::{self, Standpoint};
+use crate::ops::views::paint::{Drawn, Standpoint, Wanted};
 use crate::scene::shots;
-use crate::tui::events::Effect;
+use crate::tui::events::{Effect, ToDraw};
+use crate::tui::state::painting::Sees;
 use crate::tui::state::{State, painting};
 use crate::tui::text::numbers::rounded;
 use crate::tui::text::plain;
@@ -29,6 +30,9 @@ pub const COMMANDS: &[Command] = &[command(
 )
 // What is painted over is what is seen.
 .awaiting(|_, text| text.starts_with("add "))];
+
+/// What runs while a view is drawn.
+const ADDING: &str = "views add";
 
 const NONE: &str = "no view lies on a mesh yet: :views add NAME lays one";
 
@@ -92,6 +96,7 @@ fn layer(state: &State) -> Result<usize, String> {
 }
 
 fn add(state: &mut State, name: &str, kind: Option<&str>, size: Option<&str>) -> Done {
+    state.outside.idle()?;
     state.scene.writable()?;
     let layer = layer(state)?;
     let synth = state.picture.synth.clone().ok_or_else(|| unseen(state))?;
@@ -101,16 +106,33 @@ fn add(state: &mut State, name: &str, kind: Option<&str>, size: Option<&str>) ->
     };
     let sight = Standpoint { layer, camera: eye(state)?, time: state.play.time, size_px };
     let scene = (state.scene.path(), state.document());
-    let (applied, picture) = paint::begin(scene, &synth, &sight, (name, kind)).map_err(|error| error.to_string())?;
+    let wanted = Wanted::new(scene, sight, (name, kind)).map_err(|error| error.to_string())?;
+    state.outside.work = Some(ADDING.to_owned());
+    let document = state.document().clone();
+    state.ask(Effect::Draw(Box::new(ToDraw { wanted, document, synth })));
+    Ok(())
+}
+
+/// Lays what has been drawn to be painted on, unless the scene has been left meanwhile.
+pub fn drawn(state: &mut State, result: Result<(Wanted, Drawn), String>) {
+    if state.outside.work.take().is_none() {
+        return;
+    }
+    let told = result.and_then(|(wanted, drawn)| lay(state, &wanted, &drawn));
+    state.tell_beside(told.map_err(|why| format!("{ADDING}: {why}")));
+}
+
+fn lay(state: &mut State, wanted: &Wanted, drawn: &Drawn) -> Result<String, String> {
+    let laid = wanted.lay((state.scene.path(), state.document()), drawn);
+    let (layer, applied, picture) = laid.map_err(|error| error.to_string())?;
     state.edit(applied.edit, false)?;
     let count = state.document().scene().layers[layer].technique().lying().map_or(0, |lying| lying.len());
     if let Some(last) = count.checked_sub(1) {
         paint_on(state, layer, last);
     }
-    state.say(plain(&applied.told));
     let picture = std::path::absolute(picture).map_err(|error| error.to_string())?;
     state.ask(Effect::EditImage(picture));
-    Ok(())
+    Ok(plain(&applied.told))
 }
 
 /// Why nothing is seen of the scene yet.
@@ -138,17 +160,14 @@ fn step(state: &mut State, by: i64) -> Done {
     let next = (index as i64 + by).rem_euclid(lying.len() as i64) as usize;
     let told = format!("{}, {} of {}", plain(lying[next].name), next + 1, lying.len());
     select(state, layer, next);
-    painting::follow(state);
     state.say(told);
     Ok(())
 }
 
 /// Goes to the row of a view, and so it is painted on.
 fn select(state: &mut State, layer: usize, index: usize) {
-    let list = state.document().scene().layers[layer].technique().lay(&[]).map_or("", |laying| laying.list);
-    let row = format!("/layers/{layer}{list}/{index}");
     state.picture.laid = Some((layer, index));
-    go_to(state, &row);
+    go_to(state, &painting::row(state, layer, index));
 }
 
 /// Makes a view the one that is painted on. The cursor stays, but on the row of another, which would count more.
@@ -211,6 +230,10 @@ fn go(state: &mut State, name: Option<&str>) -> Done {
     let [position, target] = [position, target].map(|at| place.transform_point3(at).into());
     let up = place.transform_vector3(up).normalize_or(DVec3::Y).into();
     let camera = Camera { position, target, up, fov, ..Camera::default() };
+    // One looks from there at the result.
+    if let Some(painting) = &mut state.picture.painting {
+        painting.sees = Sees::Results;
+    }
     state.ask(Effect::Look(Some(Box::new(camera))));
     state.say(format!("the window looks from {}", plain(&name)));
     Ok(())

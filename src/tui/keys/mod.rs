@@ -3,7 +3,7 @@
 
 mod keymap;
 mod names;
-pub use keymap::Keymap;
+pub use keymap::{Keymap, contexts};
 pub use names::{Meaning, OWN_FILE, name};
 mod table;
 pub use table::{

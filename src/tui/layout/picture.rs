@@ -68,7 +68,7 @@ pub fn settle(state: &mut State) {
 
 /// Which overlays of the document are drawn over the picture, and what is selected.
 pub fn overlays(state: &State) -> View {
-    let selection = Some(state.focused());
+    let selection = Some(painting::selection(state));
     let is_shown = |overlay: &&Overlay| {
         overlay.when == When::Document && !overlay.is_words && !state.picture.off.contains(overlay.name)
     };
@@ -100,7 +100,7 @@ fn switched(state: &State, part: &Part, protocol: Protocol, selects: bool) -> Vi
     let [spacing_px, cell_px] = [spacing, cell].map(overlay::spacing);
     let times = overlay::times(state.play.time, state.document().scene().timeline.wrap);
     let vectors = state.picture.switches.vectors.clone();
-    let selection = Some(state.focused());
+    let selection = Some(painting::selection(state));
     let only = only_shown(state);
     View { shown, only, spacing_px, cell_px, least_px, times, vectors, selection, ..View::default() }
 }

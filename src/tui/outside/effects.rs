@@ -6,7 +6,7 @@ use std::path::Path;
 use super::editor::{Editor, listen};
 use super::job::Job;
 use super::options::Options;
-use super::{image_editor, pipe, terminal};
+use super::{image_editor, paint, pipe, terminal};
 use crate::base::system::folders;
 use crate::base::system::signals::{self, Signal};
 use crate::files::session::Mode;
@@ -20,7 +20,7 @@ use crate::tui::events::{Effect, Event};
 use crate::tui::graphics::request::Request;
 use crate::tui::keys::Keymap;
 use crate::tui::layout::picture::request;
-use crate::tui::state::State;
+use crate::tui::state::{State, painting};
 use crate::tui::text::said;
 
 impl Editor {
@@ -32,7 +32,7 @@ impl Editor {
                 self.watch_files();
             }
             Effect::Show => {
-                self.preview.say(FromEditor::Selection(Some(self.state.focused())));
+                self.preview.say(FromEditor::Selection(Some(painting::selection(&self.state))));
                 self.preview.say(FromEditor::Transport(self.state.transport()));
             }
             Effect::Pass => self.preview.passing(self.state.transport().time),
@@ -44,9 +44,7 @@ impl Editor {
             Effect::Save { to, overwrite, leave } => self.save(to.as_deref(), overwrite, leave),
             Effect::Write(path, text) => self.write(&path, &text),
             Effect::Source(path) => {
-                if let Err(error) = self.source(&path) {
-                    self.state.complain(error.to_string());
-                }
+                self.source(&path).unwrap_or_else(|error| self.state.complain(error.to_string()));
             }
             Effect::Keymap => self.load_keys(),
             Effect::Open(path) => drop(self.open(&path, self.options.mode())),
@@ -62,6 +60,7 @@ impl Editor {
             Effect::Mute => self.preview.view(&views::show_muted(&self.state.apart.hidden(self.state.document()))),
             Effect::Probe(words) if self.screen.is_none() => self.start(&words, false),
             Effect::Probe(_) => {}
+            Effect::Draw(asked) => self.job = Some(paint::start(*asked, self.sender.clone())),
             Effect::Pipe(program, table) => {
                 let most = self.options.files.limits.paste;
                 self.job = Some(pipe::start(program, table, most, self.sender.clone()));

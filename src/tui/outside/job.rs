@@ -118,7 +118,7 @@ struct Messages {
 }
 
 /// Progress as a line: what, how far, a bar, the share, and how long the rest will take.
-fn progress(name: &str, what: &str, (done, total): (u64, u64), spent: Duration) -> String {
+pub fn progress(name: &str, what: &str, (done, total): (u64, u64), spent: Duration) -> String {
     const CELLS: u64 = 8;
     let of = |whole: u64| done.min(total) * whole / total.max(1);
     let bar: String = (0..CELLS).map(|i| if i < of(CELLS) { '█' } else { '░' }).collect();

@@ -10,6 +10,7 @@ pub mod lines;
 pub mod offscreen;
 pub mod options;
 pub mod pace;
+mod paint;
 mod pipe;
 pub mod runner;
 pub mod screen;

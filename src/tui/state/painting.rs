@@ -50,6 +50,28 @@ pub fn current(state: &State) -> Option<(usize, usize, String)> {
     found.into_iter().find(|(nearness, _)| *nearness == nearest).map(|(_, view)| view)
 }
 
+/// The row of a picture on a mesh.
+pub fn row(state: &State, layer: usize, index: usize) -> String {
+    let layers = &state.document().scene().layers;
+    let laying = layers.get(layer).and_then(|layer| layer.technique().lay(&[]));
+    format!("/layers/{layer}{}/{index}", laying.map_or("", |laying| laying.list))
+}
+
+/// What marks show as selected: what is under the cursor, but in select the picture that is painted on.
+pub fn selection(state: &State) -> String {
+    marked(state).unwrap_or_else(|| state.focused())
+}
+
+/// The row that marks show as selected in place of what is under the cursor, which counts more on an item of the same layer.
+fn marked(state: &State) -> Option<String> {
+    state.picture.painting.filter(|painting| painting.sees == Sees::Select)?;
+    let (layer, index, _) = current(state)?;
+    let focused = state.focused();
+    let below = Pointer(&focused).below(&format!("/layers/{layer}")).unwrap_or_default();
+    let is_item = below.split('/').any(|part| part.parse::<usize>().is_ok());
+    (!is_item).then(|| row(state, layer, index))
+}
+
 /// What the pane shows in place of what the scene's camera sees.
 pub fn sight(state: &State) -> Option<Sight> {
     let painting = state.picture.painting.filter(|_| state.picture.looking.is_none())?;
@@ -132,10 +154,16 @@ pub fn size(state: &State) -> Option<(usize, usize)> {
     Some(painted().unwrap_or(synth.size))
 }
 
-/// Notes which picture is selected, has windows show what the pane shows, and takes the size of that. Where it is another, the pane shows all of it.
+/// Notes which picture is selected, has windows show what the pane shows and mark what it marks, and takes the size of that. Where it
+/// is another, the pane shows all of it.
 pub fn follow(state: &mut State) {
     if let Some((layer, index, _)) = current(state) {
         state.picture.laid = Some((layer, index));
+    }
+    let marked = marked(state);
+    if state.picture.marked != marked {
+        state.picture.marked = marked;
+        state.ask(Effect::Show);
     }
     let sight = sight(state);
     if state.picture.told != sight {

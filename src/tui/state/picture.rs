@@ -33,6 +33,8 @@ pub struct Picture {
     pub painting: Option<Painting>,
     /// The picture on a mesh that was selected last, by its layer and its index: it is painted on while the cursor is elsewhere.
     pub laid: Option<(usize, usize)>,
+    /// The row that windows were told to mark in place of what is under the cursor.
+    pub marked: Option<String>,
     /// What windows were told to show in place of what the camera sees.
     pub told: Option<Sight>,
     /// Which overlays are shown here and in the windows. Those of the document alone are shown here until they are turned off.
@@ -76,6 +78,7 @@ impl Picture {
             looking: None,
             painting: None,
             laid: None,
+            marked: None,
             told: None,
             switches: Switches::default(),
             off: BTreeSet::new(),

@@ -5,7 +5,7 @@ use crate::base::pointer::Pointer;
 use kurbo::{Point, Vec2};
 use serde_json::Value;
 
-use super::{State, spatial};
+use super::{State, painting, spatial};
 use crate::scene::field::{self, Field, Kind};
 use crate::scene::{Document, Edit};
 use crate::tui::text::numbers::tidy;
@@ -137,7 +137,8 @@ pub fn add_here(state: &State) -> Result<(Edit, String), String> {
             }
         }
     }
-    Err("no list in focus takes points: go to one that does first".into())
+    let views = painting::current(state).map_or("", |_| ", and points of views are put in select (:layout select)");
+    Err(format!("no list in focus takes points: go to one that does first{views}"))
 }
 
 /// The lists directly inside the node at `pointer`.

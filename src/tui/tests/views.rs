@@ -8,6 +8,7 @@ use serde_json::json;
 
 use super::support::{at, press, said, said_last};
 use crate::base::maths::tan;
+use crate::base::progress::Watch;
 use crate::files::materials::{self, Cache};
 use crate::layers::parts::marks::Shape;
 use crate::layers::space::camera::Camera;
@@ -16,10 +17,11 @@ use crate::render::sight::Sight;
 use crate::render::{self, cpu};
 use crate::tui::commands::update::update;
 use crate::tui::document::open_scene::OpenScene;
-use crate::tui::events::Effect;
+use crate::tui::events::{Effect, Event};
 use crate::tui::graphics::TerminalPicture;
 use crate::tui::layout::{self, picture};
 use crate::tui::panes;
+use crate::tui::state::painting::Sees;
 use crate::tui::state::{State, painting, place};
 use crate::tui::text::color::Depth;
 
@@ -48,7 +50,14 @@ fn show(state: &mut State) {
 }
 
 fn run(state: &mut State, line: &str) -> (String, Vec<Effect>) {
-    let effects = press(state, &format!(": \"{line}\" Enter"));
+    let mut effects = press(state, &format!(": \"{line}\" Enter"));
+    // As the editor does beside the keys.
+    if let Some(at) = effects.iter().position(|effect| matches!(effect, Effect::Draw(_)))
+        && let Effect::Draw(asked) = effects.remove(at)
+    {
+        let drawn = asked.wanted.draw(&asked.document, &asked.synth, &Watch::NONE).map_err(|error| error.to_string());
+        effects.extend(update(state, Event::Drawn(Box::new(drawn.map(|drawn| (asked.wanted, drawn))))));
+    }
     (state.message.as_ref().map(|message| message.text.clone()).unwrap_or_default(), effects)
 }
 
@@ -193,6 +202,104 @@ fn the_view_that_was_selected_last_is_painted_on() {
     run(&mut state, "views next");
     run(&mut state, "views add b both 8x6");
     assert_eq!(name(&state), "b");
+}
+
+#[test]
+fn of_the_three_views_one_is_shown_and_its_marks_are_of_what_is_painted_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut state = opened(folder.path());
+    run(&mut state, "views add a both 8x6");
+    show(&mut state);
+    state.outside.window = "window".into();
+    let sees = |state: &State| (picture::sees(state), state.picture.told.is_some());
+    for (layout, shown) in [("select", true), ("painting", true), ("results", false)] {
+        run(&mut state, &format!("layout {layout}"));
+        assert_eq!(sees(&state).1, shown, "{layout}");
+        // One looks at the result.
+        let effects = run(&mut state, "views go a").1;
+        assert_eq!(sees(&state), (Sees::Results, false), "{layout}");
+        assert_eq!(effects.iter().any(|effect| matches!(effect, Effect::Sight)), shown, "{layout}");
+        assert!(run(&mut state, "sphere blend").0.contains(":layout select shows it"), "{layout}");
+    }
+    let row = |index: usize| format!("/layers/0/surface/views/{index}");
+    let selection = |state: &State| picture::overlays(state).selection.unwrap();
+    for (line, marked) in [
+        ("go layers.wall.pose", "/layers/0/pose/position"),
+        ("layout select", &row(5)),
+        ("views next", &row(0)),
+        ("go layers.wall.surface.views.2.camera", &format!("{}/camera/position", row(2))),
+        ("go layers.wall.pose", &row(2)),
+        ("layout results", "/layers/0/pose/position"),
+    ] {
+        let effects = run(&mut state, line).1;
+        assert_eq!(selection(&state), marked, "{line}");
+        assert!(line.starts_with("views") || effects.iter().any(|effect| matches!(effect, Effect::Show)), "{line}");
+    }
+}
+
+#[test]
+fn what_is_no_key_here_is_told_where_it_is_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut state = opened(folder.path());
+    run(&mut state, "views add a both 8x6");
+    show(&mut state);
+    run(&mut state, "go layers.wall.pose");
+    for (keys, told) in [
+        ("g i Ctrl-n", "Ctrl-n is not a key here, but of the picture, in the layout for painting (? shows the keys)"),
+        ("F12", "F12 is not a key here (? shows the keys)"),
+        (
+            "a",
+            "no list in focus takes points: go to one that does first, and points of views are put in select (:layout select)",
+        ),
+        (
+            ": \"layout painting\" Enter a",
+            "things are placed in the results (:layout results), and points of views in select (:layout select)",
+        ),
+    ] {
+        press(&mut state, keys);
+        assert_eq!(said_last(&state), (true, told.to_owned()), "{keys}");
+    }
+}
+
+#[test]
+fn keys_do_not_wait_for_what_is_painted_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut state = opened(folder.path());
+    let effects = press(&mut state, ": \"views add a\" Enter");
+    let asked = effects.into_iter().find_map(|effect| match effect {
+        Effect::Draw(asked) => Some(asked),
+        _ => None,
+    });
+    let asked = *asked.unwrap();
+    assert_eq!((state.outside.work.as_deref(), asked.wanted.pieces()), (Some("views add"), 15));
+    assert!(run(&mut state, "views add b").0.contains("something is running already"));
+    // Meanwhile another edit, which stays.
+    run(&mut state, "set layers.wall.pose.scale=3");
+    let drawn = |state: &State| {
+        let synth = state.picture.synth.clone().unwrap();
+        asked.wanted.draw(&asked.document, &synth, &Watch::NONE).map_err(|error| error.to_string())
+    };
+    let event = |drawn| Event::Drawn(Box::new(drawn));
+    let ended = event(drawn(&state).map(|drawn| (asked.wanted.clone(), drawn)));
+    update(&mut state, ended);
+    assert_eq!(said_last(&state).1, "1 picture laid on wall; 5 pictures of it as it was are its base coat");
+    assert_eq!(at(&state, "/layers/0/pose/scale"), json!(3));
+    let count = |state: &State| at(state, "/layers/0/surface/views").as_array().unwrap().len();
+    assert_eq!(count(&state), 6);
+    // What comes when nothing is awaited is of a scene that has been left.
+    let late = event(drawn(&state).map(|drawn| (asked.wanted.clone(), drawn)));
+    update(&mut state, late);
+    assert_eq!(count(&state), 6);
+    state.outside.work = Some("views add".into());
+    update(&mut state, event(Err("interrupted, nothing is added".into())));
+    assert_eq!(said_last(&state), (true, "views add: interrupted, nothing is added".to_owned()));
+    press(&mut state, "u u");
+    state.outside.work = Some("views add".into());
+    std::fs::remove_dir_all(folder.path().join("views")).unwrap();
+    run(&mut state, "set layers.wall.surface.kind=view-map");
+    let other = event(drawn(&state).map(|drawn| (asked.wanted.clone(), drawn)));
+    update(&mut state, other);
+    assert!(said_last(&state).1.contains("the surface has become another meanwhile"), "{:?}", said_last(&state));
 }
 
 #[test]

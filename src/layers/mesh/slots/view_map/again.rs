@@ -8,10 +8,11 @@ use super::arrays::Arrays;
 use super::blend::Points;
 use super::id::{depth_of, share_of};
 use super::looked::Filled;
-use super::map::{Map, Wanted, Watch};
+use super::map::{KEPT_BYTES, Map, Wanted};
 use super::sample::{Reader, Spot};
 use super::view::View;
 use crate::base::pixels::{Linear, Rgba};
+use crate::base::progress::Watch;
 use crate::layers::parts::moment::Columns;
 use crate::layers::space::raster::{NONE, Raster};
 
@@ -61,22 +62,25 @@ impl<'a> Again<'a> {
     }
 }
 
-/// What the view of this number in the document sees of the map without it; `None` if the map is not made of it.
-pub fn without((map, arrays): Filled, points: &Points, number: usize) -> Option<Linear> {
+/// What the view of this number in the document sees of the map without it; `None` if the map is not made of it, or it was stopped.
+pub fn without((map, arrays): Filled, points: &Points, number: usize, watch: &Watch) -> Option<Linear> {
     let view = map.wanted.views.iter().find(|view| view.number == number)?;
     let views = map.wanted.views.iter().filter(|other| other.number != number).cloned().collect();
     let wanted = Wanted { levels: Some(map.cells.layers.len()), views, ..map.wanted.clone() };
-    let left = Map::new(wanted, Some(map), &Watch { stopped: &|| false, done: &|_| () })?;
-    let arrays = arrays.and_then(|arrays| Arrays::new(&left, arrays.side(), &|| false));
-    Some(seen((&left, arrays.as_ref()), points, view))
+    let left = Map::new(wanted, Some(map), KEPT_BYTES, watch)?;
+    let arrays = arrays.and_then(|arrays| Arrays::new(&left, arrays.side(), watch.stopped));
+    Some(seen((&left, arrays.as_ref()), points, view, watch))
 }
 
-/// What a view sees of a map.
-pub fn seen((map, arrays): Filled, points: &Points, view: &View) -> Linear {
+/// What a view sees of a map; less if it was stopped.
+pub fn seen((map, arrays): Filled, points: &Points, view: &View, watch: &Watch) -> Linear {
     let (again, (width, height)) = (Again::new(map, view), view.camera.size_px);
     let base = points.at(view.camera.position, -view.camera.axes()[2]);
     let mut picture: Vec<Rgba> = vec![[0.0; 4]; width * height];
     picture.par_chunks_mut(width.max(1)).enumerate().for_each(|(y, row)| {
+        if (watch.stopped)() {
+            return;
+        }
         let mut reader = Reader::new(map, arrays);
         again.row(y, |x, _, spot| {
             let [r, g, b] = reader.at(spot, None).shown(base).map(|light| light as f32);

@@ -7,6 +7,7 @@ use super::looked::Filled;
 use super::sample::Reader;
 use crate::base::maths::ln;
 use crate::base::pixels::{Rgba, encode};
+use crate::base::progress::Watch;
 
 /// The least cosine between the normal and the way to the camera.
 const LEAST_NORMAL: f64 = 0.2;
@@ -20,16 +21,27 @@ pub struct Again {
     pub share: f64,
 }
 
-/// How each active view comes back; `None` if nothing of it is seen.
-pub fn compare(filled: Filled) -> Vec<Option<Again>> {
-    (0..filled.0.wanted.views.len()).map(|view| one(filled, view)).collect()
+/// How each active view comes back; `None` if nothing of it is seen, or it was stopped.
+pub fn compare(filled: Filled, watch: &Watch) -> Vec<Option<Again>> {
+    let one = |view| {
+        let again = one(filled, view, watch);
+        (watch.done)(view);
+        again
+    };
+    (0..filled.0.wanted.views.len()).map(one).collect()
 }
 
-fn one((map, arrays): Filled, view: usize) -> Option<Again> {
+fn one((map, arrays): Filled, view: usize, watch: &Watch) -> Option<Again> {
+    if (watch.stopped)() {
+        return None;
+    }
     let own = &map.wanted.views[view];
     let (looking, (width, height), pixels) = (Looking::new(map, own), own.camera.size_px, own.paint.pixels());
     let rows = (0..height).into_par_iter().map(|y| {
         let (mut sum, mut count, mut share, mut reader) = (0_u64, 0_u64, 0.0, Reader::new(map, arrays));
+        if (watch.stopped)() {
+            return (sum, count, share);
+        }
         looking.row(y, |x, normal, spot| {
             let picture = pixels[y * width + x];
             if picture[3] < 1.0 || normal < LEAST_NORMAL {

@@ -12,6 +12,7 @@ use super::id::Seen;
 use super::lists::Lists;
 use super::view::View;
 use crate::base::mesh::Mesh;
+use crate::base::progress::Watch;
 
 /// How many levels there are where no view sees anything.
 pub const UNSEEN: usize = 5;
@@ -19,8 +20,10 @@ pub const UNSEEN: usize = 5;
 const FINEST: (f64, f64) = (2.0, 5.0);
 /// How far a view may be deeper than the finest layer before another is made.
 const DEEPER: f64 = 0.05;
-/// The memory for what views see while the levels are not yet known, and for what is kept of it; what is beyond is found twice.
-const KEPT_BYTES: usize = 1 << 29;
+/// The most memory for what views see while the levels are not yet known, and for what is kept of it; what is beyond is found twice.
+pub const KEPT_BYTES: usize = 1 << 29;
+/// The most layers that there are if it is not said.
+pub const MOST_LEVELS: usize = FINEST.1 as usize + 1;
 
 /// What a map is made from.
 #[derive(Clone, Debug)]
@@ -89,21 +92,14 @@ pub struct Map {
     seen: Vec<Option<Arc<Seen>>>,
 }
 
-/// What watches over a filling.
-pub struct Watch<'a> {
-    /// Whether it should end.
-    pub stopped: &'a (dyn Fn() -> bool + Sync),
-    /// Called with the index of each view that is done.
-    pub done: &'a (dyn Fn(usize) + Sync),
-}
-
 impl Map {
-    /// Fills a map; `None` if it was stopped. What it has in common with `previous` is reused.
-    pub fn new(wanted: Wanted, previous: Option<&Map>, watch: &Watch) -> Option<Map> {
+    /// Fills a map; `None` if it was stopped. What it has in common with `previous` is reused. There is memory for so many bytes of what
+    /// views see while the levels are not yet known.
+    pub fn new(wanted: Wanted, previous: Option<&Map>, room: usize, watch: &Watch) -> Option<Map> {
         let before = previous.filter(|map| Arc::ptr_eq(&map.wanted.mesh, &wanted.mesh) && map.wanted.by == wanted.by);
         let atlas = before.map_or_else(|| Arc::new(Atlas::new(&wanted.mesh, wanted.by)), |map| map.atlas.clone());
         let before = before.filter(|map| map.wanted.first == wanted.first);
-        let (mut seen, depths) = looked(&wanted, &atlas, before, watch)?;
+        let (mut seen, depths) = looked(&wanted, &atlas, before, (room, watch))?;
         let levels = wanted.levels.unwrap_or_else(|| Cells::fitting(&atlas, wanted.first, automatic(&depths)));
         let before = before.filter(|map| map.cells.layers.len() == levels);
         let cells = before.map_or_else(|| Arc::new(Cells::new(&atlas, wanted.first, levels)), |map| map.cells.clone());
@@ -239,12 +235,11 @@ fn looked(
     wanted: &Wanted,
     atlas: &Atlas,
     before: Option<&Map>,
-    watch: &Watch,
+    (mut room, watch): (usize, &Watch),
 ) -> Option<(Vec<Option<Seen>>, Vec<Option<f64>>)> {
     if wanted.levels.is_some() {
         return Some((wanted.views.iter().map(|_| None).collect(), Vec::new()));
     }
-    let mut room = KEPT_BYTES;
     let (mut all, mut depths) = (Vec::new(), Vec::new());
     // In pieces, so that no more is in memory at once than there is room for.
     for views in wanted.views.chunks(rayon::current_num_threads().max(1)) {

@@ -51,7 +51,7 @@ impl Paint {
             if let Some(mask) = &self.mask {
                 counts *= stored(mask, x, y);
             }
-            if self.guide.as_ref().is_some_and(|guide| !self.changed(*pixel, guide, x, y)) {
+            if self.guide.as_ref().is_some_and(|guide| !differs(*pixel, guide.texel(x, y))) {
                 counts = 0.0;
             }
             let [r, g, b, a] = *pixel;
@@ -60,11 +60,12 @@ impl Paint {
         }
         pixels
     }
+}
 
-    fn changed(&self, pixel: Rgba, guide: &Picture, x: usize, y: usize) -> bool {
-        let (own, other) = (encode(pixel), encode(guide.texel(x, y)));
-        own.iter().zip(other).any(|(own, other)| own.abs_diff(other) > CHANGED)
-    }
+/// Whether a pixel counts as changed beside that of a guide.
+pub fn differs(pixel: Rgba, guide: Rgba) -> bool {
+    let (own, other) = (encode(pixel), encode(guide));
+    own.iter().zip(other).any(|(own, other)| own.abs_diff(other) > CHANGED)
 }
 
 /// The brightest channel times alpha, as stored: codes from 0 to 1.

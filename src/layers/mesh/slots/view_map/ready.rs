@@ -14,6 +14,7 @@ use crate::base::error::Error;
 use crate::base::number;
 use crate::base::pixels::Linear;
 use crate::base::problem::Problem;
+use crate::base::progress::Watch;
 use crate::base::reduce::Reduced;
 use crate::layers::mesh::pose::Placed;
 use crate::layers::mesh::surface::{Look, Reader, ReadySurface, StillSurface, SurfacePoint};
@@ -60,7 +61,7 @@ impl Ready {
         if let Some((_, seen)) = kept.as_ref().filter(|(number, _)| *number == view.number) {
             return seen.clone();
         }
-        let seen = Arc::new(again::seen(self.filled(), &self.points, view));
+        let seen = Arc::new(again::seen(self.filled(), &self.points, view, &Watch::NONE));
         *kept = Some((view.number, seen.clone()));
         seen
     }
@@ -82,12 +83,12 @@ impl ReadySurface for Ready {
         plan::look((&self.map, self.arrays.as_ref()), base(&self.points, &eye, placed), focal_px)
     }
 
-    fn lying(&self, compare: bool) -> Option<Vec<Value>> {
+    fn lying(&self, compare: Option<&Watch>) -> Option<Vec<Value>> {
         Some(told::told(self.filled(), compare))
     }
 
-    fn guide(&self, view: usize) -> Option<Linear> {
-        again::without(self.filled(), &self.points, view)
+    fn guide(&self, view: usize, watch: &Watch) -> Option<Linear> {
+        again::without(self.filled(), &self.points, view, watch)
     }
 
     fn lacks(&self) -> Option<Problem> {

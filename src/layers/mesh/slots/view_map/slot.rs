@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::arrays::{Arrays, ELEMENT_BYTES};
 use super::blend::Points;
 use super::cells::{Cells, Layer, MOST_CELLS};
-use super::map::{Map, UNSEEN, Wanted, Watch};
+use super::map::{KEPT_BYTES, MOST_LEVELS, Map, UNSEEN, Wanted};
 use super::model::{Atlas, ViewMap};
 use super::ready::Ready;
 use super::report;
@@ -17,6 +17,7 @@ use crate::base::mesh::Mesh;
 use crate::base::pixels::encode;
 use crate::base::pointer::Pointer;
 use crate::base::problem::Problem;
+use crate::base::progress::Watch;
 use crate::layers::mesh::added::Added;
 use crate::layers::mesh::surface::{Before, ReadySurface, SurfaceSlot};
 use crate::layers::parts::bundle::Form;
@@ -131,13 +132,16 @@ fn filled(
     let looking = match materials.budget.try_take(looked) {
         Ok(looking) => looking,
         Err(short) => {
-            let problem = short.problem_of("", "make the pictures of its views smaller");
+            // What they tell is not known before they look: the cure is to be enough for that too.
+            let problem =
+                short.then(most_bytes(&wanted, side)).problem_of("", "make the pictures of its views smaller");
             let nothing = Wanted { views: Vec::new(), ..wanted };
-            let map = |watch: &Watch| Map::new(nothing, None, watch).ok_or_else(stop);
-            return left_out(problem, "nothing of its views is shown", materials, || map(&watch));
+            let map = || Map::new(nothing, None, 0, &watch).ok_or_else(stop);
+            return left_out(problem, "nothing of its views is shown", materials, map);
         }
     };
-    let mut map = Map::new(wanted, before, &watch).ok_or_else(stop)?;
+    let room = usize::try_from(materials.budget.left()).map_or(KEPT_BYTES, |left| left.min(KEPT_BYTES));
+    let mut map = Map::new(wanted, before, room, &watch).ok_or_else(stop)?;
     drop(looking);
     let bytes = bytes(&map, map.cells.layers.len(), side);
     let kept = materials.budget.try_take(bytes + map.seen_bytes()).or_else(|_| {
@@ -189,6 +193,16 @@ fn bytes(map: &Map, levels: usize, side: Option<usize>) -> u64 {
     let entries: usize = map.lists.iter().take(levels).map(|lists| lists.entries.len()).sum();
     let cells: usize = map.cells.layers.iter().take(levels).map(Layer::len).sum();
     entries as u64 * report::ENTRY_BYTES + side.map_or(0, |side| (cells * side * side) as u64 * ELEMENT_BYTES)
+}
+
+/// The most memory that a map may take: if each of its views tells each cell something.
+fn most_bytes(wanted: &Wanted, side: Option<usize>) -> u64 {
+    let atlas = atlas::Atlas::new(&wanted.mesh, wanted.by);
+    let levels = wanted.levels.unwrap_or_else(|| Cells::fitting(&atlas, wanted.first, MOST_LEVELS));
+    let cells: f64 = (1..=levels).map(|levels| Cells::most(&atlas, wanted.first, levels)).sum();
+    let of_cell =
+        wanted.views.len() as u64 * report::ENTRY_BYTES + side.map_or(0, |side| (side * side) as u64 * ELEMENT_BYTES);
+    (cells as u64).saturating_mul(of_cell)
 }
 
 /// How a map that needs more than is left gets along with that: with fewer layers, or without arrays.

@@ -12,13 +12,14 @@ use super::compare::compare;
 use super::entries::{Entry, Reach};
 use super::gauge::Gauges;
 use super::id::Seen;
-use super::map::{Map, Wanted, Watch};
+use super::map::{KEPT_BYTES, Map, Wanted};
 use super::mix::{Part, mix};
 use super::paint::Paint;
 use super::view::{Extremes, Fade, View};
 use crate::base::maths::{TAU, cos, sin};
 use crate::base::mesh::{Mesh, Vertex};
 use crate::base::picture::Picture;
+use crate::base::progress::Watch;
 use crate::layers::space::eye::Eye;
 
 /// Squares of 2 m that face front, at these depths; they lie beside one another in the texture.
@@ -99,7 +100,7 @@ fn wanted(mesh: Arc<Mesh>, views: Vec<View>) -> Wanted {
 }
 
 fn filled(wanted: Wanted, previous: Option<&Map>) -> Map {
-    Map::new(wanted, previous, &Watch { stopped: &|| false, done: &|_| () }).unwrap()
+    Map::new(wanted, previous, KEPT_BYTES, &Watch::NONE).unwrap()
 }
 
 fn round() -> Vec<View> {
@@ -143,10 +144,10 @@ fn the_surface_is_half_a_square_of_the_atlas_in_charts() {
 #[test]
 fn a_lone_view_is_shown_as_it_is_from_its_own_camera() {
     let map = filled(Wanted { levels: None, ..wanted(ball(), vec![view([0.0, 1.0, 4.0], 0)]) }, None);
-    let near = compare((&map, None))[0].unwrap();
+    let near = compare((&map, None), &Watch::NONE)[0].unwrap();
     assert!(near.psnr >= 36.0 && near.share > 0.99, "{near:?}");
     let twice = wanted(ball(), vec![view([0.0, 1.0, 4.0], 0), view([0.0, 1.0, 4.0], 1)]);
-    let twice = compare((&filled(twice, None), None))[1].unwrap();
+    let twice = compare((&filled(twice, None), None), &Watch::NONE)[1].unwrap();
     assert!(twice.share < 0.6, "half of what is seen there is the other's: {twice:?}");
     let report = super::report::map((&map, None));
     assert_eq!((report.charts, report.levels), (1, map.cells.layers.len()));
@@ -263,7 +264,9 @@ fn the_bytes_do_not_depend_on_threads_nor_on_what_was_filled_before() {
 #[test]
 fn a_stopped_filling_gives_nothing() {
     let watch = Watch { stopped: &|| true, done: &|_| () };
-    assert!(Map::new(wanted(ball(), round()), None, &watch).is_none());
+    assert!(Map::new(wanted(ball(), round()), None, KEPT_BYTES, &watch).is_none());
+    let map = filled(wanted(ball(), round()), None);
+    assert!(compare((&map, None), &watch).iter().all(Option::is_none));
 }
 
 #[test]

@@ -7,11 +7,12 @@ use super::map::Map;
 use super::view::View;
 use super::{balance, compare, report};
 use crate::base::number;
+use crate::base::progress::Watch;
 use crate::layers::parts::shots::Feeds;
 
 /// An object for each active view, in order, then one for the map; with `compare` also how well each view comes back.
-pub fn told(filled: Filled, compare: bool) -> Vec<Value> {
-    let again = if compare { compare::compare(filled) } else { Vec::new() };
+pub fn told(filled: Filled, compare: Option<&Watch>) -> Vec<Value> {
+    let again = compare.map(|watch| compare::compare(filled, watch)).unwrap_or_default();
     let views = report::views(filled.0).into_iter().enumerate().map(|(i, of)| {
         let cells = of.cells.iter().map(
             |[own, finer, coarser, beside]| json!({ "own": own, "finer": finer, "coarser": coarser, "beside": beside }),
@@ -24,7 +25,7 @@ pub fn told(filled: Filled, compare: bool) -> Vec<Value> {
             "beyond": number::json(of.beyond),
             "cells": cells.collect::<Vec<_>>(),
         });
-        if compare {
+        if compare.is_some() {
             let again = again.get(i).copied().flatten();
             let finite =
                 |number: Option<f64>| number.filter(|number| number.is_finite()).map_or(Value::Null, number::json);

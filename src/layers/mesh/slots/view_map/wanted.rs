@@ -9,14 +9,14 @@ use super::camera::{Camera, nearest_turn};
 use super::entries::Reach;
 use super::map::Wanted;
 use super::model::{self, Atlas, ViewCamera, ViewMap};
-use super::paint::Paint;
+use super::paint::{Paint, differs};
 use super::view::{Extremes, Fade, View, nearest_on_axis};
 use crate::base::color;
 use crate::base::maths::tan;
 use crate::base::mesh::Mesh;
 use crate::base::picture::Picture;
 use crate::base::pixels::decode;
-use crate::base::problem::Problem;
+use crate::base::problem::{Problem, quoted};
 use crate::layers::parts::materials::Materials;
 use crate::layers::parts::shots::Feeds;
 use crate::layers::parts::shots::misshapen;
@@ -24,6 +24,10 @@ use crate::layers::space::eye::Eye;
 
 /// The field of view of a camera that has none, in degrees.
 const FOV: f64 = 40.0;
+/// So many pixels along each side are compared with a guide.
+const LOOKED_AT: usize = 64;
+/// A picture that differs from its guide in more than this share has probably been saved in the place of another.
+const MOST_PAINTED: f64 = 0.9;
 
 /// What is to be filled.
 ///
@@ -45,10 +49,15 @@ pub fn wanted(map: &ViewMap, mesh: &Arc<Mesh>, materials: &Materials) -> Result<
     })
 }
 
-/// What does not fit: pictures to their cameras, masks and guides to their pictures. Paths are relative to the surface.
+/// What does not fit: pictures to their cameras, masks and guides to their pictures; and what is unlike its guide. Paths are relative
+/// to the surface.
 pub fn misfits(map: &ViewMap, materials: &Materials) -> Vec<Problem> {
     let views = map.views.iter().enumerate().filter(|(_, view)| view.active);
-    let of = |(number, own)| misfits_of(own, materials).into_iter().map(move |problem| (number, problem));
+    let of = |(number, own)| {
+        let problems = misfits_of(own, materials);
+        let unlike = if problems.is_empty() { unlike(own, materials) } else { None };
+        problems.into_iter().chain(unlike).map(move |problem| (number, problem))
+    };
     views.flat_map(of).map(|(number, problem)| problem.under(&format!("/views/{number}"))).collect()
 }
 
@@ -76,6 +85,25 @@ fn misfits_of(own: &model::View, materials: &Materials) -> Vec<Problem> {
         ([width, height] != [own_width, own_height]).then(problem)
     });
     shape.into_iter().chain(beside).collect()
+}
+
+/// That a picture has nearly nothing of its guide, as when something else was saved in its place. Some of its pixels tell.
+fn unlike(own: &model::View, materials: &Materials) -> Option<Problem> {
+    let name = own.changed.as_ref()?;
+    let (picture, guide) = (materials.pictures.get(&own.image)?, materials.pictures.get(name)?);
+    let [across, down] =
+        [picture.width(), picture.height()].map(|side| (0..side).step_by(side.div_ceil(LOOKED_AT).max(1)));
+    let places = down.flat_map(|y| across.clone().map(move |x| (x, y)));
+    let pairs = places.map(|(x, y)| (picture.texel(x, y), guide.texel(x, y)));
+    let shown = pairs.filter(|(own, other)| own[3] > 0.0 || other[3] > 0.0);
+    let (all, differ) =
+        shown.fold((0_u32, 0_u32), |(all, differ), (own, other)| (all + 1, differ + u32::from(differs(own, other))));
+    let share = f64::from(differ) / f64::from(all.max(1));
+    (share > MOST_PAINTED).then(|| {
+        let message = format!("about {:.0} % of it differs from its guide {}, and counts as paint", 100.0 * share, quoted(name));
+        let cure = "if less is painted, another picture was saved, or in another place or size; set changed to null if all of it is meant";
+        Problem::warning("/image", message).hint(cure)
+    })
 }
 
 /// How the mesh is laid flat.
@@ -142,4 +170,39 @@ fn camera(own: &ViewCamera, size: (usize, usize), mesh: &Mesh) -> (Camera, DVec3
     let camera = Camera::of_turn(turn, shift, DVec2::from(focal), middle, whole).resized(size);
     let center = mesh.bounds().map_or(DVec3::ZERO, |(low, high)| (low + high) / 2.0);
     (camera, nearest_on_axis(&camera, center))
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn a_picture_that_has_nothing_of_its_guide_is_told() {
+        let map = json!({ "views": [{ "name": "a", "image": "own", "changed": "over", "camera": { "position": [0, 0, 4] } }] });
+        let map: ViewMap = serde_json::from_value(map).unwrap();
+        // A pattern that is clear at its border, so far to the right, and painted over in its first rows.
+        let picture = |shift: usize, painted: usize| {
+            let cell = |i: usize| {
+                let (x, y) = (i % 100, i / 100);
+                let light = (((x + 100 - shift) * 37 + y * 11) % 64) as f32 / 64.0;
+                let a = if (10..90).contains(&x) { 1.0 } else { 0.0 };
+                if y < painted { [a, 0.0, 0.0, a] } else { [0.0, light * a, light * a, a] }
+            };
+            Arc::new(Picture::from_cells(100, 50, (0..5000).map(cell).collect()))
+        };
+        for (shift, painted, told) in
+            [(0, 0, None), (0, 30, None), (0, 50, Some("about 100 %")), (3, 0, Some("about 100 %"))]
+        {
+            let pictures = [("own", picture(shift, painted)), ("over", picture(0, 0))];
+            let pictures = pictures.map(|(name, picture)| (name.to_owned(), picture)).into();
+            let found = misfits(&map, &Materials { pictures, ..Materials::default() });
+            let found: Vec<_> = found.iter().map(ToString::to_string).collect();
+            assert_eq!(found.len(), usize::from(told.is_some()), "{shift} {painted}: {found:?}");
+            let start =
+                told.map(|told| format!("views.0.image: warning: {told} of it differs from its guide \"over\""));
+            assert!(start.is_none_or(|start| found[0].starts_with(&start)), "{found:?}");
+        }
+    }
 }
