@@ -201,7 +201,7 @@ mod tests {
             ),
             (
                 json!({ "sprites": { "size": 256, "keys": 32, "growth": { "max": 32 } } }),
-                ".sprites: its keys take 1.8 GiB, and 1.0 GiB is the most (lower one of them: size 192 or keys 18 or growth.max 18",
+                ".sprites: its keys take 1.4 GiB, and 1.0 GiB is the most (lower one of them: size 208 or keys 23 or growth.max 23",
             ),
         ]
     }

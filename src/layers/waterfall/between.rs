@@ -1,16 +1,19 @@
 //! What a sprite shows between two keys: a cubic curve through both, with tangents, and a residue that neither key has.
 
+use std::num::Wrapping;
 use std::ops::Range;
 
-use glam::Vec4;
-
+use super::sprites::levels::{Level, Number, across};
 use super::sprites::residue::Residues;
-use super::sprites::{KeyPlace, Pictures};
+use super::sprites::{KeyPlace, ONE, Pictures};
 use crate::base::pixels::Rgba;
 use crate::base::simd::vectorised;
 
 /// The most keys that a picture is made of.
 const MOST: usize = 4;
+
+/// Slopes of so much altogether leave sums within the numbers that there are: keys alone take up to 1.25 of 2.
+const STEEP: f32 = 0.75;
 
 /// Which keys make a picture, and how.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -84,151 +87,149 @@ pub fn texels(from: (&Pictures, &Residues), mix: &Mix, level: usize, rows: Range
     out.resize(rows.len() * mixed.side, [0.0; 4]);
     vectorised(
         #[inline(always)]
-        || mixed.rows(rows, out),
+        || mixed.rows(rows, &mut Sums::default(), out),
     );
 }
 
-/// Keys at a level, and how they are mixed.
+/// Memory for sums, used again and again.
+#[derive(Default)]
+pub struct Sums {
+    texels: Vec<[Number; 4]>,
+    /// The alpha of each texel, four times.
+    alphas: Vec<[Number; 4]>,
+}
+
+/// Keys at a level, and how they are mixed. As weights add up to 1, a mix is the key of most weight, and what others differ
+/// from it: so a key that is alone stays as it is.
 pub struct Mixed<'a> {
     /// Texels of a side.
     pub side: usize,
-    count: usize,
-    keys: [(&'a [Rgba], f32); MOST],
-    /// What differences to the right and down add, of the first two keys; `None` if nothing.
-    slopes: Option<[[f32; 2]; 2]>,
-    residue: Option<(&'a [[f32; 1]], f32)>,
+    most: &'a Level,
+    others: [(&'a Level, Number); MOST - 1],
+    /// What differences to the right and down add, of the key of most weight and of the other; `None` if nothing.
+    slopes: Option<[[Number; 2]; 2]>,
+    /// How often numbers are halved, so that those of steep slopes fit.
+    halved: usize,
+    residue: Option<(&'a Level, Number, usize)>,
 }
 
 impl<'a> Mixed<'a> {
     /// A mix of these keys and residues at a level.
     #[inline(always)]
     pub fn new((pictures, residues): (&'a Pictures, &'a Residues), mix: &Mix, level: usize) -> Self {
-        let mut keys: [(&[Rgba], f32); MOST] = [(&[], 0.0); MOST];
-        for (key, (place, weight)) in keys.iter_mut().zip(mix.keys()) {
-            *key = (&pictures.key(*place).levels[level].1, *weight);
-        }
-        let residue = mix.residue.map(|(track, interval, weight)| {
-            let random: &[[f32; 1]] = &residues.0[track][interval].levels[level].1;
-            (random, weight)
-        });
-        let mut slopes = mix.slopes;
         // Central differences, in texels of the largest level.
-        for slope in slopes.as_flattened_mut() {
-            *slope /= (2 << level) as f32;
-        }
-        let slopes = (mix.count == 2 && slopes != [[0.0; 2]; 2]).then_some(slopes);
-        Mixed { side: pictures.side >> level, count: mix.count, keys, slopes, residue }
+        let mut slopes = if mix.count == 2 { mix.slopes } else { [[0.0; 2]; 2] };
+        slopes.as_flattened_mut().iter_mut().for_each(|slope| *slope /= (2 << level) as f32);
+        let halved = halvings(slopes.as_flattened().iter().map(|slope| slope.abs()).sum::<f32>() / STEEP);
+        let weight = |weight: f32| whole(weight, 15 - halved);
+        let key = |i: usize| (pictures.key(mix.keys[i].0).level(level), weight(mix.keys[i].1));
+        let first = usize::from(mix.count > 1 && mix.keys[1].1 > mix.keys[0].1);
+        let most = key(first).0;
+        let mut others = [(most, Wrapping(0)); MOST - 1];
+        let rest = (0..mix.count).filter(|i| *i != first);
+        others.iter_mut().zip(rest).for_each(|(other, i)| *other = key(i));
+        let slopes = (slopes != [[0.0; 2]; 2]).then(|| [first, 1 - first].map(|i| slopes[i].map(weight)));
+        let residue = mix.residue.map(|(track, interval, weight)| {
+            let doubled = halvings(weight * 32.0);
+            (residues.0[track][interval].level(level), whole(weight, 20 - doubled), doubled)
+        });
+        Mixed { side: pictures.side >> level, most, others, slopes, halved, residue }
     }
 
     /// Writes rows of texels.
     #[inline(always)]
-    pub fn rows(&self, rows: Range<usize>, out: &mut [Rgba]) {
+    pub fn rows(&self, rows: Range<usize>, sums: &mut Sums, out: &mut [Rgba]) {
+        let across = across(self.side);
+        let count = across * rows.len();
+        let texels = at_least(&mut sums.texels, count);
         match self.slopes {
-            Some(slopes) => self.advected(slopes, rows.clone(), out),
-            None => self.weighted(rows.clone(), out),
+            Some(slopes) => self.advected(slopes, &rows, texels.as_flattened_mut()),
+            None => self.weighted(&rows, texels.as_flattened_mut()),
         }
-        if let Some((random, weight)) = self.residue {
-            add_residue(&random[rows.start * self.side..rows.end * self.side], weight, out);
+        if let Some((random, weight, doubled)) = self.residue {
+            let alphas = at_least(&mut sums.alphas, count);
+            for (alphas, texel) in alphas.iter_mut().zip(&*texels) {
+                *alphas = [texel[3]; 4];
+            }
+            let random = random.rows(&rows, 0).iter().zip(alphas.as_flattened());
+            for (sum, (random, alpha)) in texels.as_flattened_mut().iter_mut().zip(random) {
+                *sum += times(times(*alpha, *random), weight) << doubled;
+            }
+        }
+        let one = 2.0 * (1 << self.halved) as f32 / ONE;
+        for (sums, out) in texels.chunks_exact(across).zip(out.chunks_exact_mut(self.side)) {
+            for (out, sum) in out.as_flattened_mut().iter_mut().zip(sums[1..].as_flattened()) {
+                *out = f32::from(sum.0) * one;
+            }
         }
     }
 
     /// Keys by their weights.
     #[inline(always)]
-    fn weighted(&self, rows: Range<usize>, out: &mut [Rgba]) {
-        out.fill([0.0; 4]);
-        for (key, weight) in &self.keys[..self.count] {
-            let key = part(key, rows.start * self.side, rows.len() * self.side);
-            for (out, number) in out.as_flattened_mut().iter_mut().zip(key) {
-                *out += number * weight;
-            }
+    fn weighted(&self, rows: &Range<usize>, out: &mut [Number]) {
+        let halved = self.halved + 1;
+        let weights = self.others.map(|(_, weight)| weight);
+        let [b, c, d] = self.others.map(|(key, _)| &key.rows(rows, 0)[..out.len()]);
+        let a = &self.most.rows(rows, 0)[..out.len()];
+        for (i, out) in out.iter_mut().enumerate() {
+            let others = times(b[i] - a[i], weights[0]) + times(c[i] - a[i], weights[1]);
+            *out = (a[i] >> halved) + others + times(d[i] - a[i], weights[2]);
         }
     }
 
-    /// Two keys with their slopes: all at once, since most of the time goes into fetching and storing texels.
+    /// Two keys with their slopes: all at once, since most of the time goes into fetching and storing numbers.
     #[inline(always)]
-    fn advected(&self, [s, t]: [[f32; 2]; 2], rows: Range<usize>, out: &mut [Rgba]) {
-        let side = self.side;
-        let [(a, weight_a), (b, weight_b)] = [self.keys[0], self.keys[1]];
-        // The rows at the top and at the bottom have none above and below; all others are one long row.
-        let inner = rows.start.max(1)..rows.end.min(side - 1);
-        let runs =
-            [(rows.start..inner.start, [0, side]), (inner.clone(), [side, side]), (inner.end..rows.end, [side, 0])];
-        for (run, steps) in runs {
-            // The first and the last texel of a picture have none to the left and to the right.
-            let run = (run.start * side).max(1)..(run.end * side).min(side * side - 1);
-            if run.is_empty() {
-                continue;
-            }
-            let (a, b) = (Around::new(a, run.clone(), steps), Around::new(b, run.clone(), steps));
-            let out = out[run.start - rows.start * side..run.end - rows.start * side].as_flattened_mut();
-            for (i, out) in out.iter_mut().enumerate() {
-                let faded = a.own[i] * weight_a + b.own[i] * weight_b;
-                let sloped = faded + (a.right[i] - a.left[i]) * s[0] + (a.below[i] - a.above[i]) * s[1];
-                *out = sloped + (b.right[i] - b.left[i]) * t[0] + (b.below[i] - b.above[i]) * t[1];
-            }
-        }
-        // The first and the last texel of each row have other neighbors than these.
-        let last = side - 1;
-        for (y, out) in rows.zip(out.chunks_exact_mut(side)) {
-            let (up, down) = (y.saturating_sub(1) * side, (y + 1).min(last) * side);
-            let y = y * side;
-            for (x, left, right) in [(0, 0, 1), (last, last - 1, last)] {
-                let at = |key: &[Rgba], i: usize| Vec4::from(key[i]);
-                let add = |key: &[Rgba], slope: [f32; 2]| {
-                    let across = at(key, y + right) - at(key, y + left);
-                    across * slope[0] + (at(key, down + x) - at(key, up + x)) * slope[1]
-                };
-                let faded = at(a, y + x) * weight_a + at(b, y + x) * weight_b;
-                out[x] = (faded + add(a, s) + add(b, t)).to_array();
-            }
+    fn advected(&self, [s, t]: [[Number; 2]; 2], rows: &Range<usize>, out: &mut [Number]) {
+        let (other, weight) = self.others[0];
+        let (halved, down) = (self.halved + 1, across(self.side) as isize);
+        let around = |key: &'a Level| [0, -1, 1, -down, down].map(|moved| &key.rows(rows, moved)[..out.len()]);
+        let [a, a_left, a_right, a_above, a_below] = around(self.most);
+        let [b, b_left, b_right, b_above, b_below] = around(other);
+        for (i, out) in out.iter_mut().enumerate() {
+            // Products are rounded down: half of them are taken with the other sign.
+            let faded = (a[i] >> halved) - times(a[i] - b[i], weight);
+            let across = times(a_right[i] - a_left[i], s[0]) - times(b_left[i] - b_right[i], t[0]);
+            let down = times(a_below[i] - a_above[i], s[1]) - times(b_above[i] - b_below[i], t[1]);
+            *out = faded + across + down;
         }
     }
 }
 
-/// Texels of a key and those next to them, number by number.
-struct Around<'a> {
-    above: &'a [f32],
-    left: &'a [f32],
-    own: &'a [f32],
-    right: &'a [f32],
-    below: &'a [f32],
-}
-
-impl<'a> Around<'a> {
-    /// Texels with those so far above and below them.
-    #[inline(always)]
-    fn new(key: &'a [Rgba], texels: Range<usize>, [up, down]: [usize; 2]) -> Self {
-        Around {
-            above: part(key, texels.start - up, texels.len()),
-            left: part(key, texels.start - 1, texels.len()),
-            own: part(key, texels.start, texels.len()),
-            right: part(key, texels.start + 1, texels.len()),
-            below: part(key, texels.start + down, texels.len()),
-        }
-    }
-}
-
-/// So many texels, number by number.
+/// So many of them; what they hold is not said.
 #[inline(always)]
-fn part(key: &[Rgba], from: usize, count: usize) -> &[f32] {
-    key[from..][..count].as_flattened()
+pub fn at_least<T: Copy + Default>(all: &mut Vec<T>, count: usize) -> &mut [T] {
+    if all.len() < count {
+        all.resize(count, T::default());
+    }
+    &mut all[..count]
 }
 
-/// Adds random numbers to the colors, as far as these cover.
-#[inline(always)]
-fn add_residue(random: &[[f32; 1]], weight: f32, out: &mut [Rgba]) {
-    let colors = Vec4::new(weight, weight, weight, 0.0);
-    for (texel, [random]) in out.iter_mut().zip(random) {
-        *texel = (Vec4::from(*texel) + colors * (texel[3] * random)).to_array();
+/// How often a number is to be halved to be 1 at most.
+fn halvings(mut number: f32) -> usize {
+    let mut count = 0;
+    while number > 1.0 {
+        (number, count) = (number / 2.0, count + 1);
     }
+    count
+}
+
+/// A weight as a number of which 2^`bits` are 1.
+fn whole(weight: f32, bits: usize) -> Number {
+    Wrapping((weight * (1 << bits) as f32).round() as i16)
+}
+
+/// The product of a number and of one of which 2^16 are 1, rounded down.
+#[inline(always)]
+fn times(number: Number, by: Number) -> Number {
+    Wrapping(((i32::from(number.0) * i32::from(by.0)) >> 16) as i16)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::layers::waterfall::hash::Random;
+    use crate::layers::waterfall::sprites::levels::Levels;
     use crate::layers::waterfall::sprites::model::Shows;
-    use crate::layers::waterfall::sprites::pyramid::Pyramid;
     use crate::layers::waterfall::sprites::{Key, Source, Track};
     use std::sync::Arc;
 
@@ -237,7 +238,7 @@ mod tests {
     fn pictures(count: u32) -> Pictures {
         let key = |k: u32| {
             let texels = (0..256).map(|i| Random(1).of(k, i, 0).map(|v| v as f32)).collect();
-            Key { window: None, texels: Arc::new(Pyramid::new(SIDE, texels)) }
+            Key { window: None, texels: Arc::new(Levels::new(SIDE, texels, ONE)) }
         };
         let track = Track { kind: Shows::Water, source: Source::Sheet, keys: (0..count).map(key).collect() };
         Pictures { side: SIDE, tracks: vec![track] }
@@ -290,7 +291,7 @@ mod tests {
     fn at_a_key_it_is_the_key_to_the_bit() {
         for kind in ["zero", "catmull", "advect"] {
             for level in [0, 2] {
-                let own = |k: usize| pictures(4).key((0, k)).levels[level].1.clone();
+                let own = |k: usize| pictures(4).key((0, k)).texels(level).collect::<Vec<_>>();
                 assert_eq!(shown(0.0, kind, level), own(1), "{kind}");
                 assert_eq!(shown(1.0, kind, level), own(2), "{kind}");
                 assert_ne!(shown(0.5, kind, level), own(1), "{kind}");
@@ -310,19 +311,22 @@ mod tests {
 
     #[test]
     fn slopes_are_central_differences_in_texels_of_the_largest_level() {
-        let texel = |i: usize| [(3 * (i % SIDE) + 5 * (i / SIDE)) as f32; 4];
+        let texel = |i: usize| [(3 * (i % SIDE) + 5 * (i / SIDE)) as f32 / 128.0; 4];
         let texels_of = (0..SIDE * SIDE).map(texel).collect();
-        let key = Key { window: None, texels: Arc::new(Pyramid::new(SIDE, texels_of)) };
+        let key = Key { window: None, texels: Arc::new(Levels::new(SIDE, texels_of, ONE)) };
         let track = Track { kind: Shows::Water, source: Source::Sheet, keys: vec![key] };
         let pictures = Pictures { side: SIDE, tracks: vec![track] };
-        let mix = Mix { slopes: [[2.0, 1.0], [0.0; 2]], ..Mix::of(&[((0, 0), 0.0), ((0, 0), 0.0)]) };
+        let fade = [((0, 0), 0.7), ((0, 0), 0.3)];
+        let mix = Mix { slopes: [[0.0; 2], [2.0, 1.0]], ..Mix::of(&fade) };
         for level in [0, 1] {
             let (mut out, side) = (Vec::new(), SIDE >> level);
             texels((&pictures, &Residues(Vec::new())), &mix, level, 0..side, &mut out);
-            let at = |x: usize, y: usize| out[y * side + x][0];
-            assert_eq!(at(2, 2), 2.0 * 3.0 + 5.0);
+            let own = pictures.key((0, 0));
+            let added = |x: usize, y: usize| 128.0 * (out[y * side + x][0] - own.texel(level, x, y)[0]);
             // Edges repeat: half of the difference.
-            assert_eq!((at(0, 2), at(side - 1, side - 1)), (3.0 + 5.0, 3.0 + 2.5));
+            for ((x, y), wanted) in [((2, 2), 11.0), ((0, 2), 8.0), ((side - 1, side - 1), 5.5)] {
+                assert!((added(x, y) - wanted).abs() < 0.04, "{level} {x} {y}: {}", added(x, y));
+            }
         }
     }
 }

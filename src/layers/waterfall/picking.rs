@@ -84,9 +84,9 @@ fn cut(synth: &Synth, picture: &Picture, frame: usize) -> Picture {
     let mut cells: Vec<Rgba> = vec![[0.0, 0.0, 0.0, 1.0]; width * height];
     let keys = synth.pictures.tracks.iter().flat_map(|track| &track.keys);
     for (key, (_, (left, top))) in keys.filter_map(|key| Some((key, key.window.filter(|(of, _)| *of == frame)?))) {
-        for (i, texel) in key.texels.levels[0].1.iter().enumerate() {
+        for (i, texel) in key.texels.texels(0).enumerate() {
             let cell = &mut cells[(top + i / side) * width + left + i % side];
-            *cell = over(*texel, *cell);
+            *cell = over(texel, *cell);
         }
     }
     Picture::from_cells(width, height, cells)

@@ -11,7 +11,7 @@ use super::lines::Line;
 use super::look::FullLook;
 use super::model::{Between, Order, Tangents};
 use super::sprites::KeyPlace;
-use super::sprites::pyramid::Pyramid;
+use super::sprites::levels::Levels;
 use super::synth::Synth;
 use crate::base::maths::{atan2, cos, lerp, log2, sin, smoothstep};
 use crate::layers::parts::moment::Moment;
@@ -102,7 +102,7 @@ fn splat(synth: &Synth, eye: &Eye, frame: (usize, usize), line: &Line, alive: Al
     let near = (depth / width - 0.5).clamp(0.0, 1.0);
     let thin = (size / SMALLEST_PX).min(DVec2::ONE);
     let side = synth.pictures.side;
-    let level = (log2(side as f64 / size_px.x) + 0.5).floor().clamp(0.0, Pyramid::<4>::last(side) as f64) as usize;
+    let level = (log2(side as f64 / size_px.x) + 0.5).floor().clamp(0.0, Levels::last(side) as f64) as usize;
     let mirrored = look.mirror && alive.own[3] < 0.5;
     let direction = |age: f64| {
         let way = on_screen(eye, values.laws.at(&line.path, age).1);

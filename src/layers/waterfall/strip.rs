@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::Vec4;
 
-use super::between::Mixed;
+use super::between::{Mixed, Sums, at_least};
 use super::blend::{Blend, Block, Planes, block};
 use super::cells::Covering;
 use super::color::{before, neighbors};
@@ -31,6 +31,8 @@ pub struct Scratch {
     canvas: Planes,
     /// The nearest surface of each block of columns, in meters.
     nearest: Vec<f64>,
+    /// What these are made of.
+    sums: Sums,
     /// Rows of texels of a sprite, and after them whatever was there.
     texels: Vec<Rgba>,
     /// What each column of a sprite that is not turned reads.
@@ -133,13 +135,13 @@ impl<'a> Strip<'a> {
     ) {
         let columns = self.find_reads(splat, columns, mixed.side);
         let blend = self.blend(splat, &columns);
-        let Scratch { canvas, texels, reads, colors, .. } = &mut *self.scratch;
+        let Scratch { canvas, sums, texels, reads, colors, .. } = &mut *self.scratch;
         let blocks = columns.len().div_ceil(LANES);
         reads.resize(blocks * LANES, Read { left: 0, weights: [0.0; 2] });
         let colors = at_least(colors, blocks * made.len());
         let count = made.len() * mixed.side;
         let texels = at_least(texels, count + REACH);
-        mixed.rows(made.clone(), &mut texels[..count]);
+        mixed.rows(made.clone(), sums, &mut texels[..count]);
         for i in 0..made.len() {
             // As many as can be asked for: no read needs to be checked.
             let Some(texels) = texels[i * mixed.side..].first_chunk::<REACH>() else { continue };
@@ -204,9 +206,9 @@ impl<'a> Strip<'a> {
     fn turned(&mut self, drawn: &Covering, mixed: &Mixed, rows: Range<usize>, made: Range<usize>) {
         let (splat, side) = (drawn.splat, mixed.side);
         let blend = self.blend(splat, &drawn.columns);
-        let Scratch { canvas, texels, aside, corners, .. } = &mut *self.scratch;
+        let Scratch { canvas, sums, texels, aside, corners, .. } = &mut *self.scratch;
         let texels = at_least(texels, side + WINDOW);
-        mixed.rows(made.clone(), &mut texels[..made.len() * side]);
+        mixed.rows(made.clone(), sums, &mut texels[..made.len() * side]);
         // As many as can be asked for: no read needs to be checked.
         let (Some(above), Some(below)) = (texels.first_chunk::<WINDOW>(), texels[side..].first_chunk::<WINDOW>())
         else {
@@ -249,15 +251,6 @@ impl<'a> Strip<'a> {
             );
         }
     }
-}
-
-/// So many of them; what they hold is not said.
-#[inline(always)]
-fn at_least<T: Copy + Default>(all: &mut Vec<T>, count: usize) -> &mut [T] {
-    if all.len() < count {
-        all.resize(count, T::default());
-    }
-    &mut all[..count]
 }
 
 /// The rows of texels that a sprite reads in these rows of the frame.

@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use super::sprites::Pictures;
-use super::sprites::pyramid::Pyramid;
+use super::sprites::levels::Levels;
 use super::sprites::residue::Residues;
 use crate::base::half::half_of_value;
 use crate::layers::parts::plan::{Format, Packed, Upload};
@@ -24,7 +24,7 @@ impl Atlas {
     fn levels(&self) -> impl Iterator<Item = ([usize; 2], usize)> {
         let side = self.side;
         let mut top = 1;
-        (0..=Pyramid::<1>::last(side)).map(move |level| match level {
+        (0..=Levels::last(side)).map(move |level| match level {
             0 => ([1, 1], side),
             _ => {
                 let own = side >> level;
@@ -53,7 +53,7 @@ impl Atlas {
     }
 
     /// The texture with these pictures; without pictures, a single texel.
-    pub fn pack<'a, const N: usize>(self, pictures: Vec<&'a Pyramid<N>>) -> Packed<'a> {
+    pub fn pack(self, pictures: Vec<&Levels>) -> Packed<'_> {
         let [_, block] = self.block();
         let size = (WIDTH, (pictures.len().div_ceil(self.across()) * block).max(1));
         let rows = move |rows: Range<usize>, take: &mut dyn FnMut(&[u8])| {
@@ -66,16 +66,15 @@ impl Atlas {
     }
 
     /// Row `y` of the atlas.
-    fn line<const N: usize>(&self, pictures: &[&Pyramid<N>], y: usize, out: &mut [[u16; 4]]) {
+    fn line(&self, pictures: &[&Levels], y: usize, out: &mut [[u16; 4]]) {
         let [width, height] = self.block();
         let first = y / height * self.across();
         for (picture, out) in pictures.iter().skip(first).zip(out.chunks_exact_mut(width)) {
-            for (([left, top], side), (_, texels)) in self.levels().zip(&picture.levels) {
+            for (level, ([left, top], side)) in self.levels().enumerate() {
                 let own = (y % height + 1).checked_sub(top).filter(|row| *row < side + 2);
                 let Some(row) = own.map(|row| row.saturating_sub(1).min(side - 1)) else { continue };
                 for (x, cell) in out[left - 1..left + side + 1].iter_mut().enumerate() {
-                    let texel = &texels[row * side + x.saturating_sub(1).min(side - 1)];
-                    cell.iter_mut().zip(texel).for_each(|(cell, value)| *cell = half_of_value(*value));
+                    *cell = picture.texel(level, x.saturating_sub(1).min(side - 1), row).map(half_of_value);
                 }
             }
         }
@@ -92,7 +91,7 @@ impl Upload for Pictures {
 impl Upload for Residues {
     fn pack(&self) -> Vec<Packed<'_>> {
         let all: Vec<_> = self.0.iter().flatten().collect();
-        let side = all.first().map_or(1, |first| first.levels[0].0);
+        let side = all.first().map_or(1, |first| first.level(0).side);
         vec![Atlas { side }.pack(all)]
     }
 }
@@ -105,19 +104,20 @@ mod tests {
     fn every_level_of_every_picture_has_its_place_with_its_edge_repeated() {
         let side = 16;
         let count = 300;
-        let picture = |i: usize| Pyramid::new(side, (0..side * side).map(|k| [(i + k) as f32]).collect());
+        let picture = |i: usize| Levels::new(side, (0..side * side).map(|k| [(i + k) as f32; 4]).collect(), 16.0);
         let pictures: Vec<_> = (0..count).map(picture).collect();
         let packed = Atlas { side }.pack(pictures.iter().collect());
         let mut all: Vec<[u16; 4]> = Vec::new();
         (packed.rows)(0..packed.size.1, &mut |bytes| all.extend(bytemuck::cast_slice::<u8, [u16; 4]>(bytes)));
         let atlas = Atlas { side };
         for i in [0, 1, 140, 299] {
-            for (level, (own, texels)) in pictures[i].levels.iter().enumerate() {
+            for level in 0..=Levels::last(side) {
+                let own = side >> level;
                 let [left, top] = atlas.first_texel(i, level);
                 for (x, y) in [(0, 0), (0, own + 1), (own + 1, 0), (own / 2, own / 3), (own + 1, own + 1)] {
                     let at = |v: usize| v.saturating_sub(1).min(own - 1);
-                    let expected = half_of_value(texels[at(y) * own + at(x)][0]);
-                    assert_eq!(all[(top + y - 1) * WIDTH + left + x - 1][0], expected, "{i} {level} {x} {y}");
+                    let expected = pictures[i].texel(level, at(x), at(y)).map(half_of_value);
+                    assert_eq!(all[(top + y - 1) * WIDTH + left + x - 1], expected, "{i} {level} {x} {y}");
                 }
             }
         }

@@ -168,7 +168,7 @@ mod tests {
         // The picked window goes down with the square, 3 pixels a frame and 6 a key.
         let windows: Vec<_> = found.tracks[2].keys.iter().map(|key| key.window).collect();
         assert_eq!(windows, [Some((1, (16, 9))), Some((3, (16, 15))), Some((5, (16, 21)))]);
-        assert_eq!(found.key((0, 1)).levels[0].1[0], [1.0; 4]);
+        assert_eq!(found.key((0, 1)).texel(0, 0, 0), [1.0; 4]);
     }
 
     #[test]

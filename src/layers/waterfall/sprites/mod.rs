@@ -3,18 +3,18 @@
 pub mod choose;
 pub mod cut;
 pub mod growth;
+pub mod levels;
 pub mod luma;
 pub mod matte;
 pub mod model;
-pub mod pyramid;
 pub mod residue;
 
 use std::sync::Arc;
 
 use serde_json::{Map, Value};
 
+use self::levels::Levels;
 use self::model::{Shows, Sprites};
-use self::pyramid::Pyramid;
 use self::residue::Residues;
 use super::hash::Random;
 use crate::base::pixels::Rgba;
@@ -23,8 +23,8 @@ use crate::base::pixels::Rgba;
 pub const SIDE_STEP: u32 = 16;
 /// The most that they are, in texels.
 pub const LARGEST: u32 = 256;
-/// Bytes that a texel of a key takes with its smaller levels, and one of a residue.
-const TEXEL_BYTES: [u64; 2] = [22, 6];
+/// What stands for 1 in keys: so their differences are numbers of 16 bits too.
+pub const ONE: f32 = 32_766.0;
 
 /// Where a track comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,7 +54,7 @@ pub struct Key {
     /// Its frame in the clip, and left column and top row of its window, if it comes from there.
     pub window: Option<(usize, (usize, usize))>,
     /// Its texels.
-    pub texels: Arc<Pyramid<4>>,
+    pub texels: Arc<Levels>,
 }
 
 /// All pictures of a layer.
@@ -85,7 +85,7 @@ impl Pictures {
     }
 
     /// A key.
-    pub fn key(&self, (track, key): KeyPlace) -> &Pyramid<4> {
+    pub fn key(&self, (track, key): KeyPlace) -> &Levels {
         &self.tracks[track].keys[key].texels
     }
 
@@ -120,13 +120,13 @@ pub fn fitting((width, height): (usize, usize), frames: usize) -> Map<String, Va
 /// How many bytes keys and residues take at most.
 pub fn bytes_of(sprites: &Sprites) -> u64 {
     let (tracks, keys, longest) = sprites.most();
-    let side = u64::from(sprites.size);
-    side * side * (keys * TEXEL_BYTES[0] + tracks * longest * TEXEL_BYTES[1])
+    (keys + tracks * longest) * Levels::bytes(sprites.size as usize)
 }
 
-/// A key from its texels.
-fn key(side: usize, texels: Vec<Rgba>, window: Option<(usize, (usize, usize))>) -> Key {
-    Key { window, texels: Arc::new(Pyramid::new(side, texels)) }
+/// A key from its texels; light below 0 or above 1 counts as that.
+fn key(side: usize, mut texels: Vec<Rgba>, window: Option<(usize, (usize, usize))>) -> Key {
+    texels.as_flattened_mut().iter_mut().for_each(|light| *light = light.clamp(0.0, 1.0));
+    Key { window, texels: Arc::new(Levels::new(side, texels, ONE)) }
 }
 
 #[cfg(test)]
