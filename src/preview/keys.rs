@@ -12,6 +12,8 @@ pub const PLAY: &str = "play";
 pub const VIEW: &str = "view";
 /// The command of a window that connects again at once: answered by whatever follows the scene, not by an editor.
 pub const TRY_NOW: &str = "try-now";
+/// The command of a window that captures what it shows, with the extension of a file behind it.
+pub const CAPTURE: &str = "capture";
 /// The window alone.
 pub const WINDOW: &str = "window";
 
@@ -58,6 +60,7 @@ const OWN: &[KeyRow] = &[
     row(VIEW, "<", "slower", "Plays slower"),
     row(VIEW, ">", "faster", "Plays faster"),
     row(VIEW, "S", "shot", "A picture of what the window shows, saved beside the scene"),
+    row(VIEW, "Z", CAPTURE, "One round of what the window shows, as a GIF beside the scene"),
     row(VIEW, "R", "view-whole-frames", "The display's rate, or the scene's frames only"),
     row(WINDOW, "Left", "pan-left", "Shows more on the left"),
     row(WINDOW, "Right", "pan-right", "Shows more on the right"),

@@ -5,7 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::iter::repeat_n;
 use std::ops::RangeInclusive;
 
-use super::keys::{KEYS, VIEW};
+use super::keys::{CAPTURE, KEYS, VIEW};
+use crate::export::animation::formats::FORMATS;
 use crate::layers::parts::pass::COLOR;
 use crate::layers::parts::vectors::VectorLook;
 use crate::render::overlay::overlays;
@@ -216,6 +217,18 @@ pub fn wanted(command: &str) -> (&str, Option<bool>) {
         Some((name, "off")) => (name, Some(false)),
         _ => (command, None),
     }
+}
+
+/// The extensions of files in which windows capture what they show; `png` is one numbered file a frame.
+pub fn captures() -> impl Iterator<Item = &'static str> {
+    ["png"].into_iter().chain(FORMATS.iter().flat_map(|format| format.extensions).copied())
+}
+
+/// The extension in a command that captures, `gif` if it names none; `None` if it is another command or there is no such format.
+pub fn captured(command: &str) -> Option<&'static str> {
+    let named = command.strip_prefix(CAPTURE)?;
+    let extension = if named.is_empty() { "gif" } else { named.strip_prefix(' ')? };
+    captures().find(|known| *known == extension)
 }
 
 /// The command that sets what another has set to what it is now; `None` if it set nothing that all windows show alike.

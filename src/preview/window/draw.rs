@@ -21,7 +21,15 @@ impl App {
         if opened.is_seen() {
             let began = Instant::now();
             self.letters.begin();
-            match opened.paint(&mut self.state, self.shown.as_ref(), &mut self.marks, (&self.letters, &self.proxy)) {
+            let live = self.state.capture.as_ref().and_then(|round| {
+                let next = round.next(&self.state.transport, &self.state.timeline)?;
+                self.state.thin = Thin::default();
+                Some(std::mem::replace(&mut self.state.transport, next))
+            });
+            let beside = (&self.letters, &self.proxy);
+            let painted = opened.paint(&mut self.state, self.shown.as_ref(), &mut self.marks, beside);
+            live.into_iter().for_each(|live| self.state.transport = live);
+            match painted {
                 _ if opened.gpu.device().is_lost() => self.reopen()?,
                 Ok(Presented::Yes) => self.drawn(),
                 Ok(Presented::Again) => opened.window.request_redraw(),

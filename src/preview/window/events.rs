@@ -28,6 +28,11 @@ const WHEEL_PX: f64 = 60.0;
 /// How often a hidden window checks whether it can be seen again.
 const HIDDEN: Duration = Duration::from_millis(250);
 
+/// What is said of something that an editor takes: there may be none.
+fn goes(what: &str) -> String {
+    format!("{what} goes to the editor that has this scene open (plica edit)")
+}
+
 impl App {
     /// Does work that may fail; a failure ends the window.
     fn attempt(&mut self, event_loop: &ActiveEventLoop, work: impl FnOnce(&mut App) -> Result<()>) {
@@ -46,7 +51,11 @@ impl App {
         self.leading(|app| app.run(event_loop, command));
         match command {
             "mark-point" => self.tell(command, self.state.marked),
-            "select-point" | "copy-point" => self.tell(command, self.state.pointed()),
+            "select-point" => self.tell(command, self.state.pointed()),
+            "copy-point" => {
+                self.state.words.told = self.state.pointed().map(|_| goes("the place"));
+                self.tell(command, self.state.pointed());
+            }
             TRY_NOW | "next-sight" => self.reply(Gesture::Command(command.to_owned())),
             "next-pass" | "previous-pass" => self.reply(Gesture::Command(views::show_pass(self.state.pass.as_deref()))),
             switch => views::setting(switch, &self.state.switches).into_iter().for_each(|setting| {
@@ -170,6 +179,12 @@ impl ApplicationHandler<Event> for App {
                 app.redraw();
                 Ok(())
             }
+            Event::Captured(told) => {
+                app.state.capture = None;
+                (app.state.words.progress, app.state.words.told) = (None, Some(told));
+                app.redraw();
+                Ok(())
+            }
             Event::Interrupted => Err(Error::Interrupted),
             Event::Update(update) => {
                 app.follow(event_loop, update);
@@ -211,7 +226,7 @@ impl ApplicationHandler<Event> for App {
             }
             WindowEvent::MouseWheel { delta, .. } => self.wheel(delta),
             WindowEvent::DroppedFile(path) => {
-                self.state.words.told = Some(format!("{} goes to the editor that has this scene open", path.display()));
+                self.state.words.told = Some(goes(&path.display().to_string()));
                 self.reply(Gesture::Command(format!("file {}", path.display())));
                 self.redraw();
             }

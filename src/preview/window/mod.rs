@@ -18,6 +18,7 @@ use crate::base::error::{Error, Result};
 mod app;
 mod bar;
 mod canvas;
+mod capture;
 mod chrome;
 mod clock;
 mod draw;

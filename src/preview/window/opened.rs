@@ -10,6 +10,7 @@ use winit::dpi::{LogicalSize, PhysicalPosition, PhysicalSize};
 use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
 use winit::window::{CursorIcon, Fullscreen, Window};
 
+use super::capture::{self, Capture, Round};
 use super::chrome;
 use super::grasp::Held;
 use super::mouse::Shape;
@@ -62,6 +63,8 @@ pub struct OpenWindow {
     by_cpu: bool,
     /// See [`WindowOptions::screenshots`].
     screenshots: PathBuf,
+    /// What encodes a round that is being captured.
+    pub capture: Option<Capture>,
 }
 
 impl OpenWindow {
@@ -102,6 +105,7 @@ impl OpenWindow {
             looked_from,
             by_cpu,
             screenshots,
+            capture: None,
         })
     }
 
@@ -192,27 +196,72 @@ impl OpenWindow {
             [&marks.fixed, &marks.moving, &marks.dragged, &marks.labels, &chrome].map(|canvas| &canvas.strokes[..]);
         let strokes = Strokes { layers, letters };
         let drawn = self.screen.draw(&self.gpu, state, &pictures, &strokes);
+        self.keep(state, (&pictures, &strokes), wake);
+        self.gpu.device().take_uncaught()?;
+        drawn
+    }
+
+    /// Saves what is shown, where that was asked for: once, and as the next frame of a round.
+    fn keep(&mut self, state: &mut State, shown: (&Pictures, &Strokes<'_>), wake: &EventLoopProxy<Event>) {
         if std::mem::take(&mut state.screenshot) {
-            let saved = self
-                .screen
-                .screenshot(&self.gpu, state, &pictures, &strokes)
-                .and_then(|screenshot| self.save(&screenshot));
+            let screenshot = self.screen.screenshot(&self.gpu, state, shown.0, shown.1);
+            let saved = screenshot.and_then(|screenshot| self.save(&screenshot));
             state.words.told = Some(saved.unwrap_or_else(|error| error.to_string()));
             self.window.request_redraw();
         }
-        self.gpu.device().take_uncaught()?;
-        drawn
+        let Some(round) = state.capture.take() else {
+            self.capture = None;
+            return;
+        };
+        // What is drawn may be an older picture.
+        let is_due = state.has_picture() && !state.drawing && round.next(&state.transport, &state.timeline).is_some();
+        let kept = if is_due { self.capture(round, state, shown, wake) } else { Ok(round) };
+        match kept {
+            Ok(round) => {
+                state.words.progress = Some(round.words());
+                state.capture = Some(round);
+            }
+            Err(error) => {
+                state.words.progress = None;
+                state.words.told = Some(error.to_string());
+                self.capture = None;
+            }
+        }
+        if is_due {
+            self.window.request_redraw();
+        }
+    }
+
+    /// Takes what is shown above the bar as the next frame of a round.
+    fn capture(
+        &mut self,
+        mut round: Round,
+        state: &State,
+        (pictures, strokes): (&Pictures, &Strokes<'_>),
+        wake: &EventLoopProxy<Event>,
+    ) -> Result<Round> {
+        let shown = self.screen.screenshot(&self.gpu, state, pictures, strokes)?;
+        let (width, height) = (shown.width(), shown.height().min(state.area().height as usize).max(1));
+        let frame = Frame::from_cells(width, height, shown.cells()[..width * height].to_vec());
+        let capture = match &mut self.capture {
+            Some(capture) => capture,
+            none => {
+                let wake = wake.clone();
+                // If the window is gone by then, nobody reads it.
+                let told = move |told| drop(wake.send_event(Event::Captured(told)));
+                none.insert(Capture::begin(&self.screenshots, &round, (width, height), told)?)
+            }
+        };
+        capture.take(frame)?;
+        round.took_one();
+        Ok(round)
     }
 
     /// Saves a screenshot under the first name that is free; returns what is to be said of it.
     fn save(&self, screenshot: &Frame) -> Result<String> {
         let png = still::frame(screenshot).map_err(|error| Error::at(PLACE, error))?;
-        let name = |n: u32| {
-            let name = self.screenshots.file_name().unwrap_or_default().to_string_lossy();
-            self.screenshots.with_file_name(format!("{name}-shot-{n}.png"))
-        };
-        let free = (1..).map(name).find(|path| path.symlink_metadata().is_err());
-        let path = free.ok_or_else(|| Error::at(PLACE, "there are too many screenshots").cure("move them away"))?;
+        let file = |stem: &str| format!("{stem}.png");
+        let path = self.screenshots.with_file_name(file(&capture::free(&self.screenshots, "shot", file)?));
         write::write_new(&path, &png)?;
         Ok(format!("saved as {}", path.display()))
     }

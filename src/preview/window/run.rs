@@ -2,6 +2,7 @@
 
 use kurbo::Vec2;
 
+use super::capture::Round;
 use super::state::{Panel, State};
 use super::style::BACKGROUNDS;
 use super::viewport::Fit;
@@ -45,6 +46,12 @@ impl State {
         self.words.told = None;
         if self.switches.take(command).is_some() {
             self.transport.whole_frames = self.shows("view-whole-frames");
+            return Outcome::Redraw;
+        }
+        if let Some(extension) = views::captured(command) {
+            if !self.gives_up_capture() {
+                self.capture = Some(Round::new(extension, &self.transport, &self.timeline));
+            }
             return Outcome::Redraw;
         }
         let (name, wanted) = views::wanted(command);
@@ -94,9 +101,22 @@ impl State {
 
     /// Closes what lies over the picture; if there is nothing, leaves the full screen.
     fn close(&mut self) -> Outcome {
+        if self.gives_up_capture() {
+            return Outcome::Redraw;
+        }
         let panel = std::mem::take(&mut self.panel) != Panel::None;
         let marked = self.marked.take().is_some();
         if panel || marked || self.words.put_away() { Outcome::Redraw } else { Outcome::Window }
+    }
+
+    /// Gives up what is being captured, if something is.
+    fn gives_up_capture(&mut self) -> bool {
+        let given_up = self.capture.take().is_some();
+        if given_up {
+            self.words.progress = None;
+            self.words.told = Some("the capture is given up".to_owned());
+        }
+        given_up
     }
 
     /// Shows the pass so many places on, of those in which the scene has something.
@@ -156,6 +176,22 @@ mod tests {
         state.run("view-whole-frames on");
         assert!(state.transport.whole_frames);
         assert_eq!(state.run("zoom-in on"), Outcome::Unknown);
+    }
+
+    #[test]
+    fn a_capture_is_given_up_by_its_key_and_by_esc() {
+        for (commands, extension) in [
+            (&["capture"][..], Some("gif")),
+            (&["capture apng"], Some("apng")),
+            (&["capture", "zoom-in"], Some("gif")),
+            (&["capture", "capture"], None),
+            (&["capture", "close-panel"], None),
+        ] {
+            let mut state = State::for_tests();
+            commands.iter().for_each(|command| assert_eq!(state.run(command), Outcome::Redraw));
+            assert_eq!(state.capture.as_ref().map(|round| round.extension.as_str()), extension, "{commands:?}");
+        }
+        assert_eq!(State::for_tests().run("capture ../x.gif"), Outcome::Unknown);
     }
 
     #[test]

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use kurbo::{Point, Size, Vec2};
 
+use super::capture::Round;
 use super::own_view::OwnView;
 use super::thin::Thin;
 use super::transport::Playhead;
@@ -81,6 +82,8 @@ pub struct State {
     pub cursor: Option<Point>,
     /// What the window shows is to be saved.
     pub screenshot: bool,
+    /// What is being captured of it.
+    pub capture: Option<Round>,
     /// Two corners of the box that the mouse draws, in pixels of the picture.
     pub band: Option<(Point, Point)>,
     /// What can be dragged.
@@ -152,6 +155,7 @@ impl Default for State {
             marked: None,
             cursor: None,
             screenshot: false,
+            capture: None,
             band: None,
             grips: Vec::new(),
             dragged: None,

@@ -56,6 +56,8 @@ pub enum Event {
     Drawn,
     /// The fonts of the system.
     Fonts(Box<Fonts>),
+    /// A captured round is saved, or cannot be: what is to be said.
+    Captured(String),
     /// A signal asks for the end.
     Interrupted,
 }

@@ -37,6 +37,12 @@ pub const COMMANDS: &[Command] = &[
         state.ask(Effect::View(Some("shot".into())));
         Ok(())
     }),
+    command(
+        window::CAPTURE,
+        "[gif|apng|webp|png|mp4]",
+        "Save one round of what the window shows, overlays too, as a moving picture beside the scene",
+        capture,
+    ),
     command("image", "edit [NAME]", "Open a picture of the scene in another program", image).inside(),
     command("redraw", "", "Redraw the screen", |state, _| {
         state.ask(Effect::Redraw);
@@ -107,6 +113,16 @@ fn view(state: &mut State, call: &Call) -> Done {
         }
         name => return Err(format!("the window has no command {}", quoted(name))),
     }
+    Ok(())
+}
+
+fn capture(state: &mut State, call: &Call) -> Done {
+    let command = format!("{} {}", window::CAPTURE, call.text).trim_end().to_owned();
+    if views::captured(&command).is_none() {
+        let known = views::captures().collect::<Vec<_>>().join(", ");
+        return Err(format!("nothing is captured as {}: there are {known}", quoted(call.text)));
+    }
+    state.ask(Effect::View(Some(command)));
     Ok(())
 }
 

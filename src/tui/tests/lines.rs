@@ -75,12 +75,22 @@ pub fn what_is_outside_is_asked_for() {
         ("log a", "Write(\"a\", \"\")"),
         ("view", "View(None)"),
         ("shot", "View(Some(\"shot\"))"),
+        ("capture", "View(Some(\"capture\"))"),
+        ("capture apng", "View(Some(\"capture apng\"))"),
         ("view view-field", "View(Some(\"view-field on\"))"),
         ("render -o \"a b.gif\"", "Run([\"render\", \"-o\", \"a b.gif\"])"),
     ] {
         let mut state = state();
         obey(&mut state, line, None).unwrap();
         assert_eq!(state.effects.iter().map(|effect| format!("{effect:?}")).collect::<Vec<_>>(), [effect], "{line}");
+    }
+}
+
+#[test]
+fn nothing_is_captured_in_a_format_that_there_is_not() {
+    for format in ["mp3", "../x.gif", "gif apng"] {
+        let refused = obey(&mut state(), &format!("capture {format}"), None).unwrap_err();
+        assert!(refused.contains(&format!("nothing is captured as \"{format}\": there are png, apng,")), "{refused}");
     }
 }
 
