@@ -36,22 +36,7 @@ impl State {
         if command != "view-menu" && self.panel == Panel::Menu {
             self.panel = Panel::None;
         }
-        if let Some(pass) = views::pass_in(command) {
-            // The editor repeats what a key has done.
-            if pass != self.pass {
-                self.show_pass(pass);
-            }
-            return Outcome::Redraw;
-        }
-        self.words.told = None;
-        if self.switches.take(command).is_some() {
-            self.transport.whole_frames = self.shows("view-whole-frames");
-            return Outcome::Redraw;
-        }
-        if let Some(extension) = views::captured(command) {
-            if !self.gives_up_capture() {
-                self.capture = Some(Round::new(extension, &self.transport, &self.timeline));
-            }
+        if self.runs_with_words(command) {
             return Outcome::Redraw;
         }
         let (name, wanted) = views::wanted(command);
@@ -97,6 +82,29 @@ impl State {
             _ => return Outcome::Unknown,
         }
         Outcome::Redraw
+    }
+
+    /// Runs a command that may have words behind it: a pass, a capture, a switch. False for all others.
+    fn runs_with_words(&mut self, command: &str) -> bool {
+        if let Some(pass) = views::pass_in(command) {
+            // The editor repeats what a key has done.
+            if pass != self.pass {
+                self.show_pass(pass);
+            }
+            return true;
+        }
+        self.words.told = None;
+        if let Some(extension) = views::captured(command) {
+            if !self.gives_up_capture() {
+                self.capture = Some(Round::new(extension, &self.transport, &self.timeline));
+            }
+            return true;
+        }
+        let is_switch = self.switches.take(command).is_some();
+        if is_switch {
+            self.transport.whole_frames = self.shows("view-whole-frames");
+        }
+        is_switch
     }
 
     /// Closes what lies over the picture; if there is nothing, leaves the full screen.
