@@ -47,8 +47,7 @@ impl Line {
     /// the kernel there is nothing.
     #[inline(always)]
     pub fn fill<const N: usize>(&self, [cosines, sines, squares]: &mut [[[f32; LANES]; N]; 3], count: usize) {
-        let lumps = cosines.iter_mut().zip(sines).zip(squares).take(count.div_ceil(LANES));
-        for (lump, ((cosines, sines), squares)) in lumps.enumerate() {
+        for lump in 0..count.div_ceil(LANES).min(N) {
             let begin = self.first + (lump * LANES) as f32;
             // Apart, so that the compiler sees that none overlaps another.
             let [mut with_cosine, mut with_sine, mut squared] = [[0.0; LANES]; 3];
@@ -58,7 +57,7 @@ impl Line {
                 let (cosine, sine) = wave(fused(place, self.waves, self.phase));
                 (with_cosine[k], with_sine[k], squared[k]) = (curve * cosine, curve * sine, curve * curve);
             }
-            (*cosines, *sines, *squares) = (with_cosine, with_sine, squared);
+            (cosines[lump], sines[lump], squares[lump]) = (with_cosine, with_sine, squared);
         }
     }
 }

@@ -32,7 +32,7 @@ pub fn pass(ready: &Ready, given: &Given, which: Which, out: &mut [Rgba]) {
         }
         name if name == passes::NOISE.name => match asked(ready, which.of) {
             Some(wanted) => {
-                let noise = scene.noise(wanted);
+                let noise = scene.noise_with_shares(wanted);
                 fill(out, given, |i| [noise.value[i], noise.share[i], 0.0, 1.0]);
             }
             None => fill(out, given, |_| number(0.0)),

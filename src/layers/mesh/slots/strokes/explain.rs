@@ -18,7 +18,7 @@ use crate::layers::parts::readout::{Entry, Value};
 pub fn entries(ready: &Ready, given: &Given, i: usize) -> Vec<Entry> {
     let scene = Scene::new(ready, given);
     let strokes = &ready.strokes;
-    let noises = strokes.noises.iter().map(|(name, wanted)| (name.clone(), scene.noise(wanted)));
+    let noises = strokes.noises.iter().map(|(name, wanted)| (name.clone(), scene.noise_with_shares(wanted)));
     let noises: BTreeMap<String, Noise> = noises.collect();
     let tone = tones(&scene);
     let sets: Vec<(&str, Set)> =

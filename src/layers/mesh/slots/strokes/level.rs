@@ -17,6 +17,7 @@ const SPARSE: usize = 8;
 const SURE: f64 = 1e-3;
 
 /// A plane that is close to what a tile shows of the layer.
+#[derive(Clone, Debug)]
 pub struct Level {
     /// 1 / its depth, as the `plane` of an impulse.
     plane: DVec3,
@@ -26,6 +27,16 @@ pub struct Level {
     all: Away,
     /// The same in its blocks, row after row.
     blocks: Vec<Away>,
+}
+
+/// How far another plane is from it.
+#[derive(Clone, Copy)]
+pub struct Apart {
+    /// How much more 1 / its depth is than on the other, in the corner, and how that grows to the right and down.
+    corner: f64,
+    slopes: DVec2,
+    /// How far what all of the tile shows is from the other.
+    all: Away,
 }
 
 /// The least and the most; the other way round where the layer is not seen.
@@ -106,28 +117,43 @@ impl Level {
         (all.least <= all.most).then_some(Level { plane, corner, all, blocks })
     }
 
+    /// How far a plane is from this one.
+    #[inline(always)]
+    pub fn apart(&self, plane: DVec3) -> Apart {
+        let apart = self.plane - plane;
+        let corner = apart.x * self.corner.x + apart.y * self.corner.y + apart.z;
+        let (slopes, half) = (apart.truncate(), (TILE - 1) as f64 / 2.0);
+        let spread = half * (slopes.x.abs() + slopes.y.abs());
+        Apart { corner, slopes, all: self.all.distances(corner + half * (slopes.x + slopes.y), spread) }
+    }
+
     /// Whether a kernel covers all of the layer in these columns and rows of the tile, or nothing; `None` if that differs. It is
-    /// one on this plane, and reaches so far from it, by 1 / depth times a scale.
+    /// one on a plane that is so far apart, and reaches so far from it, by 1 / depth times a scale.
     #[inline(always)]
     pub fn covered(
         &self,
-        (plane, scale, reach): (DVec3, f64, f64),
+        Apart { corner, slopes, all }: &Apart,
+        (scale, reach): (f64, f64),
         columns: &Range<usize>,
         rows: &Range<usize>,
     ) -> Option<bool> {
-        let apart = self.plane - plane;
-        let added = |x: f64, y: f64| apart.x * (self.corner.x + x) + apart.y * (self.corner.y + y) + apart.z;
-        let spread = |wide: f64, high: f64| apart.x.abs() * wide + apart.y.abs() * high;
+        let added = |x: f64, y: f64| corner + slopes.x * x + slopes.y * y;
+        let spread = |wide: f64, high: f64| slopes.x.abs() * wide + slopes.y.abs() * high;
         let told = |Away { least, most }: Away| match most * scale <= reach * (1.0 - SURE) {
             true => Some(true),
             false => (least * scale >= 2.0 * reach * (1.0 + SURE)).then_some(false),
         };
         let half = |range: &Range<usize>| (range.len() - 1) as f64 / 2.0;
+        // By all of the tile, by where the kernel is, by the blocks there.
+        let of_tile = told(*all);
+        if of_tile.is_some() {
+            return of_tile;
+        }
         let (wide, high) = (half(columns), half(rows));
         let middle = added(columns.start as f64 + wide, rows.start as f64 + high);
-        let known = told(self.all.distances(middle, spread(wide, high)));
-        if known.is_some() {
-            return known;
+        let of_kernel = told(self.all.distances(middle, spread(wide, high)));
+        if of_kernel.is_some() {
+            return of_kernel;
         }
         let (wide, high) = (half(&(0..LANES)), half(&(0..HIGH)));
         let (mut all, spread) = (Away::NONE, spread(wide, high));

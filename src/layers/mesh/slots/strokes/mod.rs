@@ -28,6 +28,7 @@ pub mod pieces;
 pub mod plan;
 pub mod restyle;
 pub mod rim;
+pub mod shown;
 pub mod sketch;
 pub mod slot;
 pub mod styles;

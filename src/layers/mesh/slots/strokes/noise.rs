@@ -1,12 +1,15 @@
 //! One noise of a layer in one frame: from its description to its value at every pixel.
 
+use std::sync::OnceLock;
+
 use glam::{DMat3, DVec2, DVec3};
 
 use super::aim::{Aim, Follows, Grows};
 use super::bins::Binning;
 use super::impulse::{Impulse, Recipe, Weight, impulses};
 use super::model::{Along, Anchor, By, Direction, Noise as Wanted, Trim as Ends, Vary};
-use super::sum::{InFrame, Noise, Trim, covers, sum};
+use super::shown::InFrame;
+use super::sum::{Noise, Trim, covers, sum};
 use super::surface::Surface;
 use super::synth::{Codes, Ready, SMOOTH, is_set};
 use super::visible::Visible;
@@ -29,6 +32,8 @@ pub struct Scene<'a> {
     pub scale: f64,
     /// The number of the drawing.
     drawing: u32,
+    /// The tensors of each of the curvatures, once they are needed.
+    tensors: Vec<OnceLock<Tensors>>,
 }
 
 /// The tensors of a mesh, turned at each vertex, and half its size.
@@ -46,7 +51,8 @@ impl<'a> Scene<'a> {
         let shown = InFrame::new((size_px, eye.focal_px), inverse, triangle, stop);
         let drawing = (given.t * ready.duration * ready.strokes.redraw + 1e-9).floor() as u32;
         let (light, scale) = (eye.turn * -given.toward, ready.scale * given.magnified);
-        Scene { ready, given, surface, shown, light, scale, drawing }
+        let tensors = vec![OnceLock::new(); ready.curvatures.len()];
+        Scene { ready, given, surface, shown, light, scale, drawing, tensors }
     }
 
     /// The spacing of a noise, in pixels.
@@ -54,13 +60,14 @@ impl<'a> Scene<'a> {
         noise.spacing * self.ready.strokes.size * self.scale
     }
 
-    /// One of its noises.
+    /// One of its noises, without shares of its variance.
     pub fn noise(&self, wanted: &Wanted) -> Noise {
-        if is_set(self.shown.stop) {
-            let count = self.given.triangle.len();
-            return Noise { value: vec![0.0; count], share: vec![0.0; count] };
-        }
-        self.aimed(wanted, |anchor, aim| self.made(wanted, anchor, aim))
+        self.made(wanted, Noise::of_values(self.given.triangle.len()))
+    }
+
+    /// The same with them.
+    pub fn noise_with_shares(&self, wanted: &Wanted) -> Noise {
+        self.made(wanted, Noise::with_shares(self.given.triangle.len()))
     }
 
     /// The impulses of one of its noises that reach a pixel; `None` for a texture, which has none in the frame.
@@ -114,7 +121,8 @@ impl<'a> Scene<'a> {
     /// Makes something of the anchor of a noise and how its impulses run.
     fn aimed<R>(&self, wanted: &Wanted, make: impl FnOnce(Anchor, &Aim) -> R) -> R {
         let (direction, anchor, vary) = (self.direction(wanted), self.anchor(wanted), self.vary(wanted));
-        let tensors = |smooth: f64, is: bool| if is { self.tensors(smooth) } else { Tensors::default() };
+        let none = Tensors::default();
+        let tensors = |smooth: f64, is: bool| is.then(|| self.tensors(smooth)).flatten().unwrap_or(&none);
         let own = tensors(direction.smooth, direction.along == Along::Curvature);
         let of_vary = tensors(SMOOTH, vary.is_some_and(|vary| vary.by == By::Curvature));
         let axis = |triangle: u32| self.axis(direction, triangle);
@@ -179,26 +187,41 @@ impl<'a> Scene<'a> {
         }
     }
 
-    fn made(&self, wanted: &Wanted, anchor: Anchor, aim: &Aim) -> Noise {
-        let shown = &self.shown;
-        let binning = (|| Binning::new(shown.size_px, shown.focal_px), Binning::sorted);
-        let mut found = match self.lumps(wanted, (anchor, aim), binning) {
-            Some(lumps) => sum(shown, &lumps, (wanted.overlap, wanted.regularity), self.trim(wanted)),
-            None => flat::sum(&self.surface, shown, &self.recipe(wanted), aim, self.px_per_m(), wanted.reach),
-        };
-        if wanted.even {
-            even::even(shown.size_px, shown.triangle, self.spacing_px(wanted), &mut found);
+    /// A noise, with what `empty` has room for.
+    fn made(&self, wanted: &Wanted, empty: Noise) -> Noise {
+        let (shown, mut noise) = (&self.shown, empty);
+        if is_set(shown.stop) {
+            return noise;
         }
-        found
+        self.aimed(wanted, |anchor, aim| {
+            let binning = (|| Binning::new(shown.size_px, shown.focal_px), Binning::sorted);
+            match self.lumps(wanted, (anchor, aim), binning) {
+                Some(lumps) => {
+                    sum(shown, &lumps, (wanted.overlap, wanted.regularity), self.trim(wanted), &mut noise);
+                }
+                None => {
+                    let recipe = self.recipe(wanted);
+                    noise = flat::sum(&self.surface, shown, &recipe, aim, self.px_per_m(), wanted.reach);
+                }
+            }
+        });
+        if wanted.even {
+            even::even(shown.size_px, shown.triangle, self.spacing_px(wanted), &mut noise);
+        }
+        noise
     }
 
-    fn tensors(&self, smooth: f64) -> Tensors {
-        let Some(curvature) = self.ready.curvature(smooth) else { return Tensors::default() };
-        let turned = curvature.tensors.iter().zip(&self.given.mesh.vertices).map(|(tensor, vertex)| {
-            let turn = self.given.eye.turn * self.given.placed.turn_at(vertex.position);
-            turn * *tensor * turn.transpose()
-        });
-        (turned.collect(), curvature.half_m)
+    /// The tensors of the mesh, smoothed so far, as they are turned; made once in a frame.
+    fn tensors(&self, smooth: f64) -> Option<&Tensors> {
+        let known = self.ready.curvatures.iter().zip(&self.tensors);
+        let ((_, curvature), tensors) = known.into_iter().find(|((known, _), _)| *known == smooth)?;
+        Some(tensors.get_or_init(|| {
+            let turned = curvature.tensors.iter().zip(&self.given.mesh.vertices).map(|(tensor, vertex)| {
+                let turn = self.given.eye.turn * self.given.placed.turn_at(vertex.position);
+                turn * *tensor * turn.transpose()
+            });
+            (turned.collect(), curvature.half_m)
+        }))
     }
 
     /// The axis of a direction as it is turned at the first corner of a triangle.

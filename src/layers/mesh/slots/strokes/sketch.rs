@@ -9,7 +9,8 @@ use super::impulse::Recipe;
 use super::marks::{Ink, Set};
 use super::model::{Force, Noise};
 use super::passes;
-use super::sum::{InFrame, Trim, sum};
+use super::shown::InFrame;
+use super::sum::{Noise as Summed, Trim, sum};
 use super::tone::share;
 use crate::base::pixels::Grid;
 use crate::base::pointer::Pointer;
@@ -59,7 +60,8 @@ fn patch(strokes: &Force, noise: &Noise) -> Patch {
         let shown = InFrame::new((size, 1.0), &inverse, &triangle, None);
         let mut kernels = Binning::new(size, shown.focal_px);
         kernels.extend(grid::impulses(size, &recipe, angle));
-        let mut found = sum(&shown, &[kernels.sorted()], (overlap, regularity), Trim::Object);
+        let mut found = Summed::of_values(count);
+        sum(&shown, &[kernels.sorted()], (overlap, regularity), Trim::Object, &mut found);
         if is_even {
             even(size, &triangle, spacing_px, &mut found);
         }

@@ -1,8 +1,6 @@
 //! The sum of all kernels: tile by tile, in the order of the impulses, so that the bits do not depend on threads.
 
 use std::ops::Range;
-use std::sync::OnceLock;
-use std::sync::atomic::AtomicBool;
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -10,7 +8,8 @@ use rayon::prelude::*;
 use super::bins::{Bins, Facet, Kernel, TILE};
 use super::curves::{LANES, Line, wave};
 use super::impulse::Impulse;
-use super::level::Level;
+use super::level::{Apart, Level};
+use super::shown::InFrame;
 use super::synth::is_set;
 use crate::base::maths::{TAU, smoothstep};
 use crate::base::simd::{fused, vectorised};
@@ -36,91 +35,49 @@ pub enum Trim {
     Triangle,
 }
 
-/// What the frame shows of a layer.
-pub struct InFrame<'a> {
-    /// Width and height, in pixels.
-    pub size_px: (usize, usize),
-    /// Distance of the picture plane, in pixels.
-    pub focal_px: f64,
-    /// 1 / the depth of what each pixel shows; 0 where that is nothing.
-    pub inverse: &'a [f64],
-    /// The triangle of the layer that each pixel shows, `u32::MAX` where it shows none.
-    pub triangle: &'a [u32],
-    /// Once it is set, the sum counts no more.
-    pub stop: Option<&'a AtomicBool>,
-    /// The levels of its tiles, row after row, once they are needed; `None` where the layer is not seen.
-    levels: OnceLock<Vec<Option<Level>>>,
-}
-
-impl<'a> InFrame<'a> {
-    /// A frame of this size, with the picture plane at this distance.
-    pub fn new(
-        (size_px, focal_px): ((usize, usize), f64),
-        inverse: &'a [f64],
-        triangle: &'a [u32],
-        stop: Option<&'a AtomicBool>,
-    ) -> InFrame<'a> {
-        InFrame { size_px, focal_px, inverse, triangle, stop, levels: OnceLock::new() }
-    }
-
-    /// What some pixels of a row have, from this one on; what is beyond the end is not to be used.
-    #[inline(always)]
-    fn lanes<T: Copy + Default>(&self, of: &[T], (x, y): (usize, usize)) -> [T; LANES] {
-        let rest = &of[y * self.size_px.0 + x..];
-        rest.first_chunk().copied().unwrap_or_else(|| {
-            let mut lanes = [T::default(); LANES];
-            lanes[..rest.len()].copy_from_slice(rest);
-            lanes
-        })
-    }
-
-    fn levels(&self) -> &[Option<Level>] {
-        self.levels.get_or_init(|| {
-            let (width, height) = self.size_px;
-            let across = width.div_ceil(TILE);
-            let tiles = (0..across * height.div_ceil(TILE)).into_par_iter();
-            let level = |i: usize| {
-                let (x, y) = (i % across * TILE, i / across * TILE);
-                let (columns, rows) = (x..(x + TILE).min(width), y..(y + TILE).min(height));
-                vectorised(
-                    #[inline(always)]
-                    || Level::new((width, self.inverse, self.triangle), &columns, &rows),
-                )
-            };
-            tiles.map(level).collect()
-        })
-    }
-}
-
 /// A noise at each pixel: mean 0 and variance 1 on the layer.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Noise {
     /// Its value.
     pub value: Vec<f32>,
-    /// The variance there, as a share of what it is on average.
+    /// The variance there, as a share of what it is on average; empty if that is not asked for.
     pub share: Vec<f32>,
 }
 
-/// The sum of the kernels of impulses, `overlap` of which are over each pixel, with so many waves in a radius.
-pub fn sum(shown: &InFrame, lumps: &[Bins], (overlap, waves): (f64, f64), trim: Trim) -> Noise {
-    let (width, height) = shown.size_px;
-    let (across, scale) = (width.div_ceil(TILE), Scale::new(overlap));
-    let mut noise = Noise { value: vec![0.0; width * height], share: vec![0.0; width * height] };
-    // What is written to, row by row of each tile.
-    let mut tiles: Vec<Vec<[&mut [f32]; 2]>> = Vec::new();
-    tiles.resize_with(across * height.div_ceil(TILE), || Vec::with_capacity(TILE));
-    let rows = noise.value.chunks_mut(width.max(1)).zip(noise.share.chunks_mut(width.max(1)));
-    for (y, (values, shares)) in rows.enumerate() {
-        let parts = values.chunks_mut(TILE).zip(shares.chunks_mut(TILE));
-        tiles[y / TILE * across..]
-            .iter_mut()
-            .zip(parts)
-            .for_each(|(tile, (values, shares))| tile.push([values, shares]));
+impl Noise {
+    /// Room for one of so many pixels, without shares.
+    pub fn of_values(count: usize) -> Noise {
+        Noise { value: vec![0.0; count], share: Vec::new() }
     }
-    let tiles = tiles.into_par_iter().zip(shown.levels()).enumerate();
-    tiles.for_each_init(Sums::new, |sums, (i, (mut out, level))| {
-        let Some(level) = level else { return };
+
+    /// The same with shares.
+    pub fn with_shares(count: usize) -> Noise {
+        Noise { share: vec![0.0; count], ..Noise::of_values(count) }
+    }
+
+    /// What it has room for in each tile of a frame of this width, row by row: for values and for shares.
+    fn tiles(&mut self, width: usize) -> Vec<Vec<[&mut [f32]; 2]>> {
+        let (across, height) = (width.div_ceil(TILE), self.value.len() / width.max(1));
+        let mut tiles = Vec::new();
+        tiles.resize_with(across * height.div_ceil(TILE), || Vec::with_capacity(TILE));
+        let mut shares = self.share.chunks_mut(width.max(1));
+        for (y, values) in self.value.chunks_mut(width.max(1)).enumerate() {
+            let mut shares = shares.next().unwrap_or_default().chunks_mut(TILE);
+            let own = tiles[y / TILE * across..].iter_mut().zip(values.chunks_mut(TILE));
+            own.for_each(|(tile, values)| tile.push([values, shares.next().unwrap_or_default()]));
+        }
+        tiles
+    }
+}
+
+/// Writes the sum of the kernels of impulses, `overlap` of which are over each pixel, with so many waves in a radius, to what
+/// `noise` has room for.
+pub fn sum(shown: &InFrame, lumps: &[Bins], (overlap, waves): (f64, f64), trim: Trim, noise: &mut Noise) {
+    let (across, scale) = (shown.size_px.0.div_ceil(TILE), Scale::new(overlap));
+    let tiles = noise.tiles(shown.size_px.0).into_par_iter().enumerate();
+    tiles.for_each_init(Sums::new, |sums, (i, mut out)| {
         let (x, y) = (i % across, i / across);
+        let Some(level) = shown.level((x, y)) else { return };
         let size = (out[0][0].len(), out.len());
         vectorised(
             #[inline(always)]
@@ -136,7 +93,6 @@ pub fn sum(shown: &InFrame, lumps: &[Bins], (overlap, waves): (f64, f64), trim: 
             },
         );
     });
-    noise
 }
 
 /// The sums of a tile, row by row: of kernels, and of their variances.
@@ -160,34 +116,42 @@ impl Tile<'_> {
     #[inline(always)]
     fn add_all(&mut self, facets: &[Facet], kernels: &[Kernel]) {
         let mut curves = [[[[0.0; LANES]; TILE / LANES]; 3]; 2];
+        // Those of a triangle follow one another.
+        let mut last = None;
         for lump in kernels.chunks(LANES) {
             if is_set(self.shown.stop) {
                 return;
             }
-            let mut angles = [0.0; LANES];
-            angles.iter_mut().zip(lump).for_each(|(angle, kernel)| *angle = kernel.angle);
-            let (mut cosines, mut sines) = ([0.0; LANES], [0.0; LANES]);
-            for k in 0..LANES {
-                (cosines[k], sines[k]) = wave(angles[k]);
-            }
+            let places = Places::new(lump, self.size);
             for (k, kernel) in lump.iter().enumerate() {
-                self.add(kernel, &facets[kernel.facet as usize], (cosines[k], sines[k]), &mut curves);
+                let facet = &facets[kernel.facet as usize];
+                let apart = match last {
+                    Some((own, apart)) if own == kernel.facet => apart,
+                    _ => self.level.apart(facet.plane),
+                };
+                last = Some((kernel.facet, apart));
+                self.add(kernel, (facet, &apart), &places.of(k), &mut curves);
             }
         }
     }
 
-    /// Adds a kernel whose angle has this cosine and this sine.
+    /// Adds a kernel whose plane is so far apart from the level.
     #[inline(always)]
-    fn add(&mut self, kernel: &Kernel, facet: &Facet, (cosine, sine): (f32, f32), [across, down]: &mut [Curves; 2]) {
-        let columns = reached(kernel.at[0], kernel.radius_px, self.size.0);
-        let rows = reached(kernel.at[1], kernel.radius_px, self.size.1);
+    fn add(
+        &mut self,
+        kernel: &Kernel,
+        (facet, apart): (&Facet, &Apart),
+        place: &Place,
+        [across, down]: &mut [Curves; 2],
+    ) {
+        let Place { columns, rows, cosine, sine } = place;
         if columns.is_empty() || rows.is_empty() {
             return;
         }
         let covered = match self.trim {
             Trim::Object => Some(true),
             Trim::Triangle => None,
-            Trim::Depth(reach) => self.level.covered((facet.plane, f64::from(kernel.scale), reach), &columns, &rows),
+            Trim::Depth(reach) => self.level.covered(apart, (f64::from(kernel.scale), reach), columns, rows),
         };
         if covered == Some(false) {
             return;
@@ -198,22 +162,21 @@ impl Tile<'_> {
         let first = rows.start as f32 + 0.5 - kernel.at[1];
         let (phase, weight) = (kernel.phase, kernel.factor);
         Line { first, inverse, waves: cosine * often, phase, weight }.fill(down, rows.len());
-        let near = match self.trim {
-            Trim::Depth(reach) => Some(Near::new(facet.plane, kernel.scale, reach)),
-            Trim::Object | Trim::Triangle => None,
-        };
         for lump in 0..columns.len().div_ceil(LANES) {
             let left = columns.start + lump * LANES;
             let block = Block { left, rows: rows.clone(), across: across.each_ref().map(|line| line[lump]), down };
             let (shown, (x, y)) = (self.shown, (self.corner.0 + left, self.corner.1));
-            match &near {
+            match self.trim {
                 _ if covered.is_some() => block.add(self.sums, |_| [1.0; LANES]),
-                Some(near) => block.add(
-                    self.sums,
-                    #[inline(always)]
-                    |row| near.covers((x, y + row), shown.lanes(shown.inverse, (x, y + row))),
-                ),
-                None => {
+                Trim::Depth(reach) => {
+                    let near = Near::new(facet.plane, kernel.scale, reach);
+                    block.add(
+                        self.sums,
+                        #[inline(always)]
+                        |row| near.covers((x, y + row), shown.lanes(shown.inverse, (x, y + row))),
+                    );
+                }
+                Trim::Object | Trim::Triangle => {
                     let own = |triangle: u32| f32::from(u8::from(triangle == facet.triangle));
                     block.add(self.sums, |row| shown.lanes(shown.triangle, (x, y + row)).map(own));
                 }
@@ -233,9 +196,63 @@ impl Tile<'_> {
                 value[x] = if own { found.0 } else { 0.0 };
                 power[x] = if own { found.1 } else { 0.0 };
             }
-            values.copy_from_slice(&value[..self.size.0]);
-            shares.copy_from_slice(&power[..self.size.0]);
+            values.copy_from_slice(&value[..values.len()]);
+            shares.copy_from_slice(&power[..shares.len()]);
         }
+    }
+}
+
+/// Where some kernels are in a tile.
+struct Places {
+    /// The columns that they reach: from and to; and the rows.
+    columns: [[f32; LANES]; 2],
+    rows: [[f32; LANES]; 2],
+    /// Of the angles of their strokes.
+    cosines: [f32; LANES],
+    sines: [f32; LANES],
+}
+
+/// Where one of them is.
+struct Place {
+    columns: Range<usize>,
+    rows: Range<usize>,
+    cosine: f32,
+    sine: f32,
+}
+
+impl Places {
+    /// Where these are in a tile of this size.
+    #[inline(always)]
+    fn new(kernels: &[Kernel], size: (usize, usize)) -> Places {
+        let (mut at, [mut radius, mut angle]) = ([[0.0; LANES]; 2], [[0.0; LANES]; 2]);
+        for (k, kernel) in kernels.iter().enumerate() {
+            [at[0][k], at[1][k]] = kernel.at;
+            (radius[k], angle[k]) = (kernel.radius_px, kernel.angle);
+        }
+        let [mut cosines, mut sines] = [[0.0; LANES]; 2];
+        for k in 0..LANES {
+            (cosines[k], sines[k]) = wave(angle[k]);
+        }
+        let [columns, rows] = [(at[0], size.0), (at[1], size.1)].map(
+            #[inline(always)]
+            |(at, length)| {
+                let mut reached = [[0.0; LANES]; 2];
+                for k in 0..LANES {
+                    // The pixels whose centers are nearer than the radius.
+                    let within = |at: f32| at.clamp(0.0, length as f32);
+                    reached[0][k] = within((at[k] - radius[k] - 0.5).floor() + 1.0);
+                    reached[1][k] = within((at[k] + radius[k] - 0.5).ceil());
+                }
+                reached
+            },
+        );
+        Places { columns, rows, cosines, sines }
+    }
+
+    #[inline(always)]
+    fn of(&self, k: usize) -> Place {
+        let range = |[from, to]: [[f32; LANES]; 2]| from[k] as i32 as usize..to[k] as i32 as usize;
+        Place { columns: range(self.columns), rows: range(self.rows), cosine: self.cosines[k], sine: self.sines[k] }
     }
 }
 
@@ -338,13 +355,6 @@ pub fn normalized(shown: &InFrame, sums: &[[f32; 2]], overlap: f64) -> Noise {
     Noise { value, share }
 }
 
-/// The pixels of a tile of this length whose centers are nearer to a place than a distance.
-#[inline(always)]
-fn reached(middle: f32, radius: f32, length: usize) -> Range<usize> {
-    let within = |at: f32| at.clamp(0.0, length as f32) as usize;
-    within((middle - radius - 0.5).floor() + 1.0)..within((middle + radius - 0.5).ceil())
-}
-
 /// How much of a kernel a pixel shows.
 pub fn covers(shown: &InFrame, trim: Trim, impulse: &Impulse, (x, y): (usize, usize)) -> f64 {
     let i = y * shown.size_px.0 + x;
@@ -386,7 +396,9 @@ mod tests {
     fn sum_of(shown: &InFrame, impulse: &Impulse, trim: Trim) -> Noise {
         let mut binning = Binning::new(shown.size_px, shown.focal_px);
         binning.extend([*impulse]);
-        sum(shown, &[binning.sorted()], (16.0, impulse.radius_px / impulse.spacing_px), trim)
+        let mut noise = Noise::with_shares(shown.triangle.len());
+        sum(shown, &[binning.sorted()], (16.0, impulse.radius_px / impulse.spacing_px), trim, &mut noise);
+        noise
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::impulse::Impulse;
-use super::sum::InFrame;
+use super::shown::InFrame;
 use crate::base::maths::{cos, sin, smoothstep};
 
 /// Where to look: rings of this radius, in kernel radii, with so many taps, the first at an angle in degrees.

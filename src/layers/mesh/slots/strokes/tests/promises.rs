@@ -99,7 +99,7 @@ fn seen<R>(synth: &Synth, moment: &Moment, make: impl FnOnce(&Given) -> R) -> R 
 /// The values and the shares of the variance of the noise, on the pixels of the layer.
 fn noise(synth: &Synth, given: &Given) -> (Vec<f32>, Vec<f32>) {
     let ready = ready_of(synth);
-    let found = Scene::new(ready, given).noise(&ready.strokes.noises["a"]);
+    let found = Scene::new(ready, given).noise_with_shares(&ready.strokes.noises["a"]);
     let own = |values: Vec<f32>| values.into_iter().zip(&given.triangle).filter(|(_, t)| **t != NONE).map(|(v, _)| v);
     (own(found.value).collect(), own(found.share).collect())
 }
