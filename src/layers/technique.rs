@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
-use kurbo::{Point, Rect};
+use kurbo::{Point, Rect, Vec2};
 use serde_json::{Map, Value};
 
 use super::parts::bundle::{Names, Sink};
@@ -109,9 +109,9 @@ pub trait Technique: Any + Send + Sync {
     /// Looks up the shapes of the scene that the layer names.
     fn resolve(&mut self, _shapes: &BTreeMap<String, Shape>) {}
 
-    /// What holds the picture still along the shape of this name, or takes it from there to another path, for what is at `path`; and
-    /// where that is to be written. `None` if nothing there moves so.
-    fn along(&self, _path: &str, _shape: (&str, &[Node]), _to: Option<&[Node]>) -> Option<(String, Value)> {
+    /// What leads the samplers along the shape of this name somewhere, for what is at `path`; and where that is to be written. `None` if
+    /// nothing there moves so.
+    fn along(&self, _path: &str, _shape: (&str, &[Node]), _lead: Lead) -> Option<(String, Value)> {
         None
     }
 
@@ -388,6 +388,15 @@ pub struct Bundled<'a> {
     pub layer: &'a dyn Technique,
     /// What was made of it.
     pub ready: &'a dyn Ready,
+}
+
+/// Where samplers along a shape are led.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Lead<'a> {
+    /// So far away, in pixels: nothing moves by nothing.
+    By(Vec2),
+    /// To the same part of another path.
+    To(&'a [Node]),
 }
 
 /// A kind of thing whose number in a scene is limited: a row of `--limit`.

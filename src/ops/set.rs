@@ -439,6 +439,8 @@ mod tests {
             (".motion.-=still-border", "/motion/0", json!({ "tool": "still-border", "spacing": 8 })),
             (".feather+=2", "/feather", json!(2)),
             (".timeline.fps=25", "/feather", json!(null)),
+            (".fps=25", "/feather", json!(null)),
+            (".power=3", "/interpolation/power", json!(3)),
         ] {
             let set = edit(&document, &[setting.to_owned()], (Path::new("s"), "/layers/0/zones/0/outline/x"));
             let after = document.apply(&set.unwrap_or_else(|why| panic!("{setting}: {why}")).edit).unwrap();
@@ -449,6 +451,9 @@ mod tests {
         let nowhere = wrong(".feather=1").unwrap_err().to_string();
         assert!(nowhere.contains("there is no such thing around the cursor"), "{nowhere}");
         wrong("layers.cat.zones.all.position=zine").unwrap_err();
+        let both = [".outline=polygon", ".position=keyframes", ".points=[[0,0]]"].map(str::to_owned);
+        let several = edit(&document, &both, (Path::new("s"), "/layers/0/zones/0")).map(drop).unwrap_err().to_string();
+        assert!(several.contains("outline.points or layers.cat.zones.all.position.points"), "{several}");
     }
 
     #[test]

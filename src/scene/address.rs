@@ -25,10 +25,10 @@ pub fn resolve(document: &Document, address: &str) -> Result<String> {
 }
 
 /// The whole of an address that begins with a dot: `.feather` is the nearest feather around the place at `here`, looked for from
-/// inside out. Any other stays as it is.
+/// inside out; where there is none, that of something that stands beside these, as `.duration` of the timeline. Any other stays as it is.
 ///
 /// # Errors
-/// If there is no such thing around the place.
+/// If there is no such thing around the place, or beside that in several things.
 pub fn around(document: &Document, here: &str, address: &str) -> Result<String> {
     let Some(way) = address.strip_prefix('.') else { return Ok(address.to_owned()) };
     let first = split(way)?.into_iter().next();
@@ -36,10 +36,29 @@ pub fn around(document: &Document, here: &str, address: &str) -> Result<String> 
         let place = Place::of(document.json(), at).filter(|place| !matches!(place.shape.body(), Body::Map(_)));
         place.zip(first.as_ref()).is_some_and(|(place, first)| step(document, address, at, place, first).is_ok())
     };
-    let found = Pointer(here).upward().find(has).map(|at| self::address(document, at));
-    let near =
-        || Error::at(address, "there is no such thing around the cursor").cure("a whole path begins with no dot");
-    found.map(|at| if at.is_empty() { way.to_owned() } else { format!("{at}.{way}") }).ok_or_else(near)
+    let beside = |at: &str| -> Vec<String> {
+        let fields = Place::of(document.json(), at).map(|place| field::below(place, at)).unwrap_or_default();
+        fields.into_iter().map(|(child, _)| child.pointer).filter(|at| has(&&**at)).collect()
+    };
+    let found = match Pointer(here).upward().find(has) {
+        Some(at) => vec![at.to_owned()],
+        None => Pointer(here).upward().map(beside).find(|found| !found.is_empty()).unwrap_or_default(),
+    };
+    let whole = |at: &String| match self::address(document, at) {
+        at if at.is_empty() => way.to_owned(),
+        at => format!("{at}.{way}"),
+    };
+    match found.as_slice() {
+        [] => {
+            let error = Error::at(address, "there is no such thing around the cursor");
+            Err(error.cure("a whole path begins with no dot"))
+        }
+        [at] => Ok(whole(at)),
+        several => {
+            let all: Vec<String> = several.iter().map(whole).collect();
+            Err(Error::at(address, "there are several").cure(all.join(" or ")))
+        }
+    }
 }
 
 /// The JSON pointers of all places that an address means in which `*` stands for every item, entry or field; those that

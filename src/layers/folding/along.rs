@@ -10,6 +10,7 @@ use crate::base::geometry::point;
 use crate::base::pointer::Pointer;
 use crate::layers::shapes::handles::evenly;
 use crate::layers::shapes::node::Node;
+use crate::layers::technique::Lead;
 
 /// A new curve has an anchor about every so many pixels, at most so many.
 const SPACING_PX: f64 = 10.0;
@@ -20,12 +21,7 @@ const PLACES: usize = 21;
 
 /// The curve along the shape of this name in the zone that `path` is in, and where it is to be written: in place of the one that is
 /// there, with as many anchors. `None` if `path` is in no zone.
-pub fn along(
-    layer: &PictureLayer,
-    path: &str,
-    (name, nodes): (&str, &[Node]),
-    to: Option<&[Node]>,
-) -> Option<(String, Value)> {
+pub fn along(layer: &PictureLayer, path: &str, (name, nodes): (&str, &[Node]), lead: Lead) -> Option<(String, Value)> {
     let (zone, _) = Pointer(path).item_of("/zones")?;
     let motion = &layer.zones.get(zone)?.motion;
     let own = |tool: &Tool| match tool {
@@ -34,9 +30,9 @@ pub fn along(
     };
     let found = motion.iter().enumerate().find_map(|(i, tool)| Some((i.to_string(), own(tool)?)));
     let (item, samples) = found.unwrap_or_else(|| ("-".to_owned(), anchors(nodes)));
-    let jumps = match to {
-        None => json!([{ "along": 0, "jump": [0, 0] }]),
-        Some(to) => leading(nodes, to),
+    let jumps = match lead {
+        Lead::By(by) => json!([{ "along": 0, "jump": neat_pair(by.to_point()) }]),
+        Lead::To(other) => leading(nodes, other),
     };
     let curve = json!({ "tool": "curve", "samples": samples, "nodes": name, "jumps": jumps });
     Some((Pointer(&format!("/zones/{zone}/motion")).join(item), curve))
@@ -65,6 +61,8 @@ fn leading(from: &[Node], to: &[Node]) -> Value {
 
 #[cfg(test)]
 mod tests {
+    use kurbo::Vec2;
+
     use super::*;
 
     fn line(y: f64, xs: [f64; 2]) -> Vec<Node> {
@@ -80,16 +78,16 @@ mod tests {
     #[test]
     fn a_curve_stays_or_goes_part_by_part_to_the_other_path() {
         let (low, lid) = (line(20.0, [0.0, 40.0]), line(4.0, [40.0, 0.0]));
-        let (at, still) = along(&layer(json!([])), "/zones/0/fold", ("low", &low), None).unwrap();
+        let (at, still) = along(&layer(json!([])), "/zones/0/fold", ("low", &low), Lead::By(Vec2::ZERO)).unwrap();
         assert_eq!(at, "/zones/0/motion/-");
         let jumps = json!([{ "along": 0, "jump": [0, 0] }]);
         assert_eq!(still, json!({ "tool": "curve", "samples": 5, "nodes": "low", "jumps": jumps }));
         // The other one runs from right to left.
         let own = json!([{ "tool": "point", "at": [1, 1] }, { "tool": "curve", "samples": 7, "nodes": "low", "jumps": jumps }]);
-        let (at, moved) = along(&layer(own), "/zones/0", ("low", &low), Some(&lid)).unwrap();
+        let (at, moved) = along(&layer(own), "/zones/0", ("low", &low), Lead::To(&lid)).unwrap();
         assert_eq!((at.as_str(), &moved["samples"]), ("/zones/0/motion/1", &json!(7)));
         assert_eq!(moved["jumps"][1], json!({ "along": 0.05, "jump": [0, -16] }));
         assert_eq!(moved["jumps"].as_array().unwrap().len(), PLACES);
-        assert!(along(&layer(json!([])), "/image", ("low", &low), None).is_none());
+        assert!(along(&layer(json!([])), "/image", ("low", &low), Lead::To(&lid)).is_none());
     }
 }

@@ -66,7 +66,7 @@ use super::ready::{Making, Prepared, Ready};
 use super::shapes::node::Node;
 use super::shapes::shape::Shape;
 use super::starts::{Starts, Template};
-use super::technique::{Bundle, Checked, Count, Counted, Kind, Technique, Turned};
+use super::technique::{Bundle, Checked, Count, Counted, Kind, Lead, Technique, Turned};
 use super::timeline::{Timeline, Wrap};
 use crate::base::change::Change;
 use crate::base::pointer::Pointer;
@@ -160,8 +160,8 @@ impl Technique for PictureLayer {
         shared::resolve(self, shapes);
     }
 
-    fn along(&self, path: &str, shape: (&str, &[Node]), to: Option<&[Node]>) -> Option<(String, Value)> {
-        along::along(self, path, shape, to)
+    fn along(&self, path: &str, shape: (&str, &[Node]), lead: Lead) -> Option<(String, Value)> {
+        along::along(self, path, shape, lead)
     }
 
     fn can_mute(&self, path: &str) -> bool {

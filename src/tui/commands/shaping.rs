@@ -1,26 +1,34 @@
 //! Shapes laid through points, and curves of a zone's motion along them.
 
-use kurbo::Point;
+use kurbo::{Point, Vec2};
 
 use super::command::{Call, Command, Done, command};
 use super::sharing::{LIST, known};
+use super::transforming::numbers;
 use crate::base::pointer::Pointer;
 use crate::base::problem::quoted;
 use crate::layers::shapes::handles::through;
-use crate::layers::shapes::node::{self, Node};
+use crate::layers::shapes::node;
 use crate::layers::shapes::shape;
-use crate::scene::{Edit, address};
-use crate::tui::state::State;
+use crate::layers::technique::Lead;
+use crate::scene::{Document, Edit, address};
+use crate::tui::state::{State, first};
+use crate::tui::text::numbers::short;
 use crate::tui::text::plain;
 use crate::tui::text::said::words;
 
 pub const COMMANDS: &[Command] = &[
-    command("shape", "NAME X,Y X,Y ...", "Lay a shape smoothly through points, a new one or one that is there", lay)
-        .change(),
+    command(
+        "shape",
+        "NAME X,Y X,Y ...|y=Y|x=X",
+        "Lay a shape smoothly through points, or straight across the picture, a new one or one that is there",
+        lay,
+    )
+    .change(),
     command(
         "along",
-        "NAME [to NAME]",
-        "Hold the picture still along a shape, in the zone here; or let the samplers go from there to another shape",
+        "NAME [to NAME|by X,Y] ...",
+        "Hold the picture still along shapes, in the zone here; or let the samplers go from one to another, or by a vector",
         along,
     )
     .change(),
@@ -28,9 +36,10 @@ pub const COMMANDS: &[Command] = &[
 
 fn lay(state: &mut State, call: &Call) -> Done {
     let words = words(call.text)?;
-    let usage = || "shape takes a name and two points or more: :shape lid 88,212 240,134 396,200".to_owned();
-    let (name, points) = words.split_first().ok_or_else(usage)?;
-    let points = points.iter().map(|word| place(word)).collect::<Result<Vec<Point>, String>>()?;
+    let usage =
+        || "shape takes a name and two points or more: :shape lid 88,212 240,134 396,200, :shape sea y=120".to_owned();
+    let (name, places) = words.split_first().ok_or_else(usage)?;
+    let points = places.iter().map(|word| points(state, word)).collect::<Result<Vec<_>, String>>()?.concat();
     if points.len() < 2 {
         return Err(usage());
     }
@@ -46,40 +55,91 @@ fn lay(state: &mut State, call: &Call) -> Done {
     Ok(())
 }
 
+/// A place of the picture, or the ends of a line across it, as they are typed.
+fn points(state: &State, word: &str) -> Result<Vec<Point>, String> {
+    let ends = match word.split_once('=') {
+        Some(("y", y)) => [["0", y], ["w", y]],
+        Some(("x", x)) => [[x, "0"], [x, "h"]],
+        _ => return Ok(vec![place(state, word)?]),
+    };
+    ends.into_iter().map(|at| point(state, at)).collect()
+}
+
 /// A place of the picture, as it is typed.
-fn place(word: &str) -> Result<Point, String> {
-    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
-    let place = word.split_once(',').and_then(|(x, y)| Some(Point::new(number(x)?, number(y)?)));
-    place.ok_or_else(|| format!("{} is no place of the picture: write it as X,Y, as 88,212", quoted(word)))
+fn place(state: &State, word: &str) -> Result<Point, String> {
+    let no_place = || format!("{} is no place of the picture: write it as X,Y, as 88,212", quoted(word));
+    let (x, y) = word.split_once(',').ok_or_else(no_place)?;
+    point(state, [x, y])
+}
+
+fn point(state: &State, at: [&str; 2]) -> Result<Point, String> {
+    match numbers(state, at)?.as_slice() {
+        &[x, y] => Ok(Point::new(x, y)),
+        _ => Err("a place is two numbers".into()),
+    }
+}
+
+/// Where the samplers along a shape go, as it is typed.
+enum Way<'a> {
+    Nowhere,
+    To(&'a str),
+    By(Vec2),
+}
+
+/// Each shape in the words of a line, and where the samplers go from there.
+fn ways<'a>(state: &State, words: &'a [String]) -> Result<Vec<(&'a str, Way<'a>)>, String> {
+    let usage =
+        || "along takes names of shapes, and where to from each: :along brow low to lid, :along sea by 6,3".to_owned();
+    let (mut ways, mut words) = (Vec::new(), words.iter().map(String::as_str).peekable());
+    while let Some(name) = words.next() {
+        known(state, name)?;
+        let way = match words.next_if(|word| ["to", "by"].contains(word)) {
+            None => Way::Nowhere,
+            Some("to") => Way::To(words.next().ok_or_else(usage)?),
+            Some(_) => Way::By(place(state, words.next().ok_or_else(usage)?)?.to_vec2()),
+        };
+        if let Way::To(other) = way {
+            known(state, other)?;
+        }
+        ways.push((name, way));
+    }
+    if ways.is_empty() { Err(usage()) } else { Ok(ways) }
 }
 
 fn along(state: &mut State, call: &Call) -> Done {
     let words = words(call.text)?;
-    let (name, to) = match words.as_slice() {
-        [name] => (name, None),
-        [name, to, other] if to == "to" => (name, Some(other)),
-        _ => return Err("along takes the name of a shape, and where to: :along low to lid".into()),
-    };
-    let shapes = &state.document().scene().shapes;
-    let nodes = |name: &String| -> Result<&[Node], String> {
-        known(state, name)?;
-        Ok(shapes.get(name).map_or(&[], |shape| &shape.nodes))
-    };
-    let (own, other) = (nodes(name)?, to.map(nodes).transpose()?);
-    let at = state.here();
-    let layer = Pointer(&at).item_of("/layers");
-    let found = layer.and_then(|(index, way)| {
-        let layer = state.document().scene().layers.get(index)?.technique();
-        let (path, value) = layer.along(way, (name, own), other)?;
-        Some((format!("/layers/{index}{path}"), value))
-    });
-    let (pointer, curve) = found.ok_or("along is for what moves in a zone: go to one")?;
-    state.edit(Edit::set(state.document(), &pointer, curve), false)?;
-    let zone = Pointer(&pointer).parent().and_then(|list| Pointer(list).parent()).unwrap_or_default();
-    let zone = address::address(state.document(), zone);
-    state.say(plain(&match to {
-        None => format!("along {} nothing moves in {zone}", quoted(name)),
-        Some(to) => format!("{zone} moves along {}: its samplers go to {}", quoted(name), quoted(to)),
-    }));
+    let ways = ways(state, &words)?;
+    let (here, mut document) = (state.here(), state.document().clone());
+    let (mut edits, mut told, mut zone) = (Vec::new(), Vec::new(), String::new());
+    for (name, way) in &ways {
+        let (pointer, edit) =
+            moved(&document, &here, name, way).ok_or("along is for what moves in a zone: go to one")?;
+        document = document.apply(&edit).map_err(|problems| first(&problems))?;
+        edits.push(edit);
+        zone = Pointer(&pointer).parent().and_then(|list| Pointer(list).parent()).unwrap_or_default().to_owned();
+        told.push(match way {
+            Way::Nowhere => format!("nothing moves along {}", quoted(name)),
+            Way::To(other) => format!("along {} the samplers go to {}", quoted(name), quoted(other)),
+            Way::By(by) => format!("along {} the samplers go by {}, {}", quoted(name), short(by.x), short(by.y)),
+        });
+    }
+    state.edit(Edit::all(edits), false)?;
+    state.say(plain(&format!("{}: {}", address::address(state.document(), &zone), told.join("; "))));
     Ok(())
+}
+
+/// The edit that lets what is at a place of a zone move along a shape, and where it writes; `None` if nothing there moves.
+fn moved(document: &Document, here: &str, name: &str, way: &Way) -> Option<(String, Edit)> {
+    let nodes = |name: &str| document.scene().shapes.get(name).map_or(&[][..], |shape| &shape.nodes);
+    let lead = match way {
+        Way::Nowhere => Lead::By(Vec2::ZERO),
+        Way::To(other) => Lead::To(nodes(other)),
+        Way::By(by) => Lead::By(*by),
+    };
+    let (index, path) = Pointer(here).item_of("/layers")?;
+    let layer = document.scene().layers.get(index)?.technique();
+    let (path, curve) = layer.along(path, (name, nodes(name)), lead)?;
+    let pointer = format!("/layers/{index}{path}");
+    let edit = Edit::set(document, &pointer, curve);
+    Some((pointer, edit))
 }

@@ -84,6 +84,16 @@ pub fn shapes_are_laid_and_what_moves_follows_them() {
         (&format!("{ARCS} : \"shape lid 0,20 9,1\" Enter"), "/shapes/lid/nodes/1/at", json!([9, 1])),
         (&arcs(": \"along low\" Enter"), &zone("/motion/0/jumps"), json!([{ "along": 0, "jump": [0, 0] }])),
         (&along, &zone("/motion/0/nodes"), json!("low")),
+        (
+            &arcs(": \"along low by 3,-4.5\" Enter"),
+            &zone("/motion/0/jumps"),
+            json!([{ "along": 0, "jump": [3, -4.5] }]),
+        ),
+        (&arcs(": \"along low lid to low\" Enter"), &zone("/motion/0/jumps"), json!([{ "along": 0, "jump": [0, 0] }])),
+        (&arcs(": \"along low lid to low\" Enter"), &zone("/motion/1/jumps/10/jump"), json!([0, 30])),
+        (&arcs(": \"along low lid\" Enter u"), &zone("/motion"), json!([])),
+        (&format!("{ARCS} : \"shape sea y=20*2\" Enter"), "/shapes/sea/nodes/1/at", json!([64, 40])),
+        (&format!("{ARCS} : \"shape mast x=w/2\" Enter"), "/shapes/mast/nodes/1/at", json!([32, 64])),
         (&along, &zone("/motion/0/jumps/10"), json!({ "along": 0.5, "jump": [0, -30] })),
         // Measured anew, it stays one.
         (
@@ -108,7 +118,11 @@ pub fn shapes_are_laid_and_what_moves_follows_them() {
     for (line, part) in [
         ("shape a 1,2", "shape takes a name and two points or more"),
         ("shape a 1,2 3;4", "\"3;4\" is no place of the picture: write it as X,Y"),
-        ("along low up lid", "along takes the name of a shape, and where to"),
+        ("along", "along takes names of shapes, and where to from each"),
+        ("along low to", "along takes names of shapes, and where to from each"),
+        ("along low up lid", "there is no shape \"up\""),
+        ("along low by 3", "\"3\" is no place of the picture: write it as X,Y"),
+        ("shape a y=q", "\"q\": "),
         ("along low to lidd", "there is no shape \"lidd\" (did you mean \"lid\"?)"),
         ("along low", "along is for what moves in a zone: go to one"),
     ] {
