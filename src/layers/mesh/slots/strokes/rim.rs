@@ -5,6 +5,9 @@ use rayon::prelude::*;
 
 use crate::base::simd::vectorised;
 
+/// Steps in depth are known to this share.
+const SURE: f64 = 1e-6;
+
 /// What is known of each pixel of a frame.
 pub struct Pixels<'a> {
     /// Width and height.
@@ -36,16 +39,16 @@ impl Pixels<'_> {
         let (width, height) = self.size_px;
         let mut found = vec![false; width * height];
         found.par_chunks_mut(width.max(1)).enumerate().for_each(|(y, row)| {
-            // Neighbors mostly show the same triangle.
-            let mut last = (u32::MAX, DVec3::ZERO);
-            for (x, found) in row.iter_mut().enumerate() {
+            let planes = self.planes(y);
+            vectorised(
+                #[inline(always)]
+                || self.may_be(rules, (y, &planes), row),
+            );
+            for (x, found) in row.iter_mut().enumerate().filter(|(_, found)| **found) {
                 let i = y * width + x;
-                let own = self.triangle[i];
-                if own == u32::MAX {
+                if self.triangle[i] == u32::MAX {
+                    *found = false;
                     continue;
-                }
-                if own != last.0 {
-                    last = (own, (self.plane)(own));
                 }
                 let beside = [
                     (x > 0).then(|| i - 1),
@@ -53,10 +56,49 @@ impl Pixels<'_> {
                     (y > 0).then(|| i - width),
                     (y + 1 < height).then(|| i + width),
                 ];
-                *found = beside.into_iter().flatten().any(|other| self.parts(rules, (i, last.1), other));
+                *found = beside.into_iter().flatten().any(|other| self.parts(rules, (i, planes[x]), other));
             }
         });
         found
+    }
+
+    /// The planes of the triangles of a row; 0 where the layer is not shown.
+    fn planes(&self, y: usize) -> Vec<DVec3> {
+        let width = self.size_px.0;
+        // Neighbors mostly show the same triangle.
+        let mut last = (u32::MAX, DVec3::ZERO);
+        let plane = |own: &u32| {
+            if *own != last.0 {
+                last = (*own, if *own == u32::MAX { DVec3::ZERO } else { (self.plane)(*own) });
+            }
+            last.1
+        };
+        self.triangle[y * width..(y + 1) * width].iter().map(plane).collect()
+    }
+
+    /// Tells where in a row a rim may be, by the depth of what is beside alone: most pixels are then done with.
+    #[inline(always)]
+    fn may_be(&self, rules: &Rules, (y, planes): (usize, &[DVec3]), found: &mut [bool]) {
+        let (width, height) = self.size_px;
+        // The first and the last may be.
+        found.fill(true);
+        let Some(count) = width.checked_sub(2).filter(|_| rules.crease.is_none()) else { return };
+        let row = |y: usize, x: usize| {
+            let own = y * width + x..y * width + x + count;
+            (&self.inverse[own.clone()], &self.triangle[own])
+        };
+        let beside = [row(y, 0), row(y, 2), row(y.saturating_sub(1), 1), row((y + 1).min(height - 1), 1)];
+        let ((own, triangles), planes, found) = (row(y, 1), &planes[1..=count], &mut found[1..=count]);
+        let step = rules.step_px / self.focal_px * (1.0 - SURE);
+        for x in 0..count {
+            let (here, DVec3 { x: right, y: down, .. }) = (own[x], planes[x]);
+            let mut parts = false;
+            for ((other, triangle), slope) in beside.iter().zip([-right, right, -down, down]) {
+                let leaves = (triangle[x] == u32::MAX) | (here + slope - other[x] > step * here);
+                parts |= (other[x] < here) & leaves;
+            }
+            found[x] = parts & (triangles[x] != u32::MAX);
+        }
     }
 
     /// Whether a pixel of the layer, whose triangle has this plane, is at a rim toward its neighbor.
