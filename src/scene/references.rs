@@ -36,7 +36,9 @@ impl Scene {
 
     /// The layers that others show as textures.
     pub fn textures(&self) -> BTreeSet<usize> {
-        (0..self.layers.len()).flat_map(|i| self.shown_by(i)).map(|(shown, _)| shown).collect()
+        // A layer alone is shown by none, and need not go through all that it names.
+        let several = (0..self.layers.len()).filter(|_| self.layers.len() > 1);
+        several.flat_map(|i| self.shown_by(i)).map(|(shown, _)| shown).collect()
     }
 }
 
