@@ -15,6 +15,7 @@ use plica::base::maths::{TAU, cos, sin, tan};
 use plica::base::mesh::{Mesh, Vertex};
 use plica::base::picture::Picture;
 use plica::base::pixels::{Frame, Linear, Rgba, decode, encode};
+use plica::base::progress::Watch;
 use plica::export::textures::{self, Forms};
 use plica::files::outputs::Guard;
 use plica::layers::parts::marks::{Mark, Shape, View};
@@ -253,7 +254,7 @@ fn photographs_come_back_from_their_own_cameras() {
     let loaded = plica::files::materials::load(&path, &scene, &Default::default(), &mut Default::default());
     let (materials, _) = loaded.unwrap();
     let synth = render::synth(&scene, &materials, None).unwrap();
-    let told = synth.layers[0].lying(true).unwrap();
+    let told = synth.layers[0].lying(Some(&Watch::NONE)).unwrap();
     let found: Vec<f64> = told.iter().filter_map(|view| view.get("psnr")?.as_f64()).collect();
     assert!(found.len() == 2 && found.iter().all(|near| *near >= 36.0), "{found:?}");
 }

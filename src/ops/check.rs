@@ -98,12 +98,12 @@ fn problems(args: &Args, context: &Context) -> Result<(Vec<Problem>, Vec<Problem
     let mut problems = document.warnings().to_vec();
     problems.extend(found);
     let is_broken = |problems: &[Problem]| problems.iter().any(|problem| problem.severity == Severity::Error);
-    // A frame needs memory beside what the layers take.
-    let room = if is_broken(&problems) { None } else { Some(room(scene, &materials)) };
-    problems.extend(room.iter().filter_map(|room| room.as_ref().err()).cloned());
     if !is_broken(&problems) {
+        // A frame needs memory beside what the layers take; where both lack some, the layers' cure is enough for it too.
+        let room = room(scene, &materials);
         problems.extend(made(scene, &materials));
         context.check_cancelled()?;
+        problems.extend(room.err().filter(|_| !is_broken(&problems)));
     }
     let (broken, mut failed) = (is_broken(&problems), None);
     let loops = render::seams::warnings(scene, &materials, || {

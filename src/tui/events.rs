@@ -37,6 +37,8 @@ pub enum Event {
     Synthesising,
     /// So much of the scene's files is read, in percent, if that takes a while.
     Reading(u8),
+    /// So much of what takes longest in a synthesis is done, in percent, if that takes a while.
+    Filling(u8),
     /// What a pixel does.
     Probed(Arc<Probed>),
     /// Which numbers the pixels of a pass have.

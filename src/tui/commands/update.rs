@@ -61,8 +61,9 @@ fn handle(state: &mut State, event: Event) {
         Event::Paste(text) => paste(state, &text),
         Event::Resize(width, height) => state.size = (width, height),
         Event::Tick(seconds) => state.pass(seconds),
-        Event::Synthesising => state.picture.synthesising = true,
+        Event::Synthesising => (state.picture.synthesising, state.picture.filled) = (true, None),
         Event::Reading(percent) => state.picture.read = Some(percent).filter(|percent| *percent < 100),
+        Event::Filling(percent) => state.picture.filled = Some(percent).filter(|percent| *percent < 100),
         Event::Probed(probed) => state.picture.probed = Some(probed),
         Event::Counted(counts) => state.picture.counts = Some(counts),
         Event::Synthesised(result) => synthesised(state, *result),
@@ -131,7 +132,7 @@ fn follow_window(state: &mut State, gesture: Gesture) {
 
 /// Handles the result of a synthesis.
 fn synthesised(state: &mut State, result: Result<Synthesis, Problem>) {
-    (state.picture.synthesising, state.picture.read) = (false, None);
+    (state.picture.synthesising, state.picture.read, state.picture.filled) = (false, None, None);
     let (problem, warning) = match &result {
         Ok(made) => (None, made.warning.as_ref()),
         Err(problem) => (Some(problem), None),

@@ -138,7 +138,7 @@ fn lay(state: &mut State, wanted: &Wanted, drawn: &Drawn) -> Result<String, Stri
 /// Why nothing is seen of the scene yet.
 fn unseen(state: &State) -> String {
     let picture = &state.picture;
-    match picture.read {
+    match picture.read.or(picture.filled) {
         _ if !picture.synthesising => "nothing is shown yet".into(),
         Some(percent) => format!("the picture is still being made ({percent} %): add the view once it is there"),
         None => "the picture is still being made: add the view once it is there".into(),

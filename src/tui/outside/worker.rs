@@ -83,12 +83,12 @@ fn next((slot, wake): &(Mutex<Option<Request>>, Condvar)) -> Option<Request> {
     guard.take()
 }
 
-/// Tells how much of the files is read, once that takes a while.
-fn reading(begun: Instant, events: mpsc::Sender<Event>) -> Progress {
+/// Tells how far something is, once that takes a while.
+fn telling(begun: Instant, events: mpsc::Sender<Event>, event: fn(u8) -> Event) -> Progress {
     Progress::new(move |percent| {
         if begun.elapsed() >= PATIENCE {
             // Nobody listens once the editor has left.
-            let _ = events.send(Event::Reading(percent));
+            let _ = events.send(event(percent));
         }
     })
 }
@@ -131,8 +131,8 @@ impl Studio {
                 return false;
             }
             let begun = self.begins(&request.scene);
-            self.cache.progress = Some(Arc::new(reading(begun, events.clone())));
-            let result = self.synthesise(request);
+            self.cache.progress = Some(Arc::new(telling(begun, events.clone(), Event::Reading)));
+            let result = self.synthesise(request, telling(begun, events.clone(), Event::Filling));
             if self.ends() && result.is_err() {
                 // A newer request has stopped it, and is served next.
                 return true;
@@ -184,17 +184,18 @@ impl Studio {
     }
 
     /// The synthesis, with a warning if there is one.
-    fn synthesise(&mut self, request: &Request) -> Result<(Arc<Synth>, Option<Problem>), Problem> {
+    fn synthesise(&mut self, request: &Request, filling: Progress) -> Result<(Arc<Synth>, Option<Problem>), Problem> {
         let (mut materials, problems) =
             files::materials::gather(&request.path, &request.scene, &self.options, &mut self.cache);
         materials.leaves_out = true;
+        materials.progress = Some(Arc::new(filling));
         let previous = self.made.as_ref().map(|made| &*made.synth);
         let (shown, synth) = request.how.synth(&request.scene, &materials, previous).map_err(|problem| {
             // Why a picture could not be read says more than that it is missing.
             problems.first().unwrap_or(&problem).clone()
         })?;
         let synth = Arc::new(synth);
-        materials.stop = None;
+        (materials.stop, materials.progress) = (None, None);
         let (scene, how) = (request.scene.clone(), request.how.clone());
         self.made = Some(Made { scene, how, shown, synth: synth.clone(), materials });
         match problems.first() {

@@ -112,7 +112,8 @@ fn right(state: &State, room: u16) -> String {
     }
     let mut facts = facts(state);
     if state.picture.synthesising {
-        let making = || format!("{} ...", made(state));
+        let far = state.picture.filled.map_or("...".to_owned(), |percent| format!("{percent} %"));
+        let making = || format!("{} {far}", made(state));
         parts.push(state.picture.read.map_or_else(making, |percent| format!("files {percent} %")));
     } else if !facts.is_empty() {
         parts.append(&mut facts);

@@ -57,6 +57,8 @@ pub struct Picture {
     pub synthesising: bool,
     /// How much of the scene's files it has read, in percent, while that is what it waits for.
     pub read: Option<u8>,
+    /// How far it is with what takes longest, in percent, once that is known.
+    pub filled: Option<u8>,
     /// The last synthesis.
     pub synth: Option<Arc<Synth>>,
     /// The scene of which it was, also if it failed.
@@ -90,6 +92,7 @@ impl Picture {
             counts: None,
             synthesising: false,
             read: None,
+            filled: None,
             synth: None,
             made: None,
             synth_ms: None,

@@ -307,6 +307,9 @@ fn long_work_says_how_far_it_is_and_how_to_end_it() {
     update(&mut state, Event::Reading(34));
     assert!(screen(&state).contains("files 34 %"));
     update(&mut state, Event::Reading(100));
+    update(&mut state, Event::Filling(12));
+    assert!(screen(&state).contains("field 12 %"));
+    update(&mut state, Event::Filling(100));
     assert!(screen(&state).contains("field ..."));
     update(&mut state, Event::Synthesised(Box::new(Err(Problem::error("", "no")))));
     assert!(!screen(&state).contains("field ..."));

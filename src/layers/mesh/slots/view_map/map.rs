@@ -22,8 +22,6 @@ const FINEST: (f64, f64) = (2.0, 5.0);
 const DEEPER: f64 = 0.05;
 /// The most memory for what views see while the levels are not yet known, and for what is kept of it; what is beyond is found twice.
 pub const KEPT_BYTES: usize = 1 << 29;
-/// The most layers that there are if it is not said.
-pub const MOST_LEVELS: usize = FINEST.1 as usize + 1;
 
 /// What a map is made from.
 #[derive(Clone, Debug)]
@@ -242,20 +240,23 @@ fn looked(
     }
     let (mut all, mut depths) = (Vec::new(), Vec::new());
     // In pieces, so that no more is in memory at once than there is room for.
-    for views in wanted.views.chunks(rayon::current_num_threads().max(1)) {
-        let seen = views.par_iter().map(|view| {
+    let numbered: Vec<_> = wanted.views.iter().enumerate().collect();
+    for views in numbered.chunks(rayon::current_num_threads().max(1)) {
+        let seen = views.par_iter().map(|(number, view)| {
             if (watch.stopped)() {
                 return None;
             }
             let known = before.and_then(|map| Some(map.reports[map.looks_as(view)?].depth));
-            Some(match known {
+            let found = match known {
                 Some(depth) => (None, depth),
                 None => {
                     let seen = look(wanted, atlas, view);
                     let depth = seen.depth;
                     (Some(seen), depth)
                 }
-            })
+            };
+            (watch.done)(*number);
+            Some(found)
         });
         for (seen, depth) in seen.collect::<Option<Vec<_>>>()? {
             let kept = seen.filter(|seen| seen.bytes() <= room);
@@ -268,7 +269,7 @@ fn looked(
 }
 
 /// How many layers views of these depths need.
-fn automatic(depths: &[Option<f64>]) -> usize {
+pub fn automatic(depths: &[Option<f64>]) -> usize {
     let deepest = depths.iter().flatten().fold(f64::NEG_INFINITY, |most, depth| most.max(*depth));
     if deepest == f64::NEG_INFINITY {
         return UNSEEN;

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use super::arrays::{Arrays, ELEMENT_BYTES};
 use super::blend::Points;
 use super::cells::{Cells, Layer, MOST_CELLS};
-use super::map::{KEPT_BYTES, MOST_LEVELS, Map, UNSEEN, Wanted};
+use super::id::depth_of;
+use super::map::{KEPT_BYTES, Map, UNSEEN, Wanted, automatic};
 use super::model::{Atlas, ViewMap};
 use super::ready::Ready;
 use super::report;
@@ -124,7 +125,9 @@ fn filled(
     materials: &Materials,
 ) -> Result<Ready, Problem> {
     let pixels: Vec<u64> = wanted.views.iter().map(pixels).collect();
-    materials.expect(pixels.iter().sum());
+    // They look first if the levels follow from that.
+    let rounds = if wanted.levels.is_none() { 2 } else { 1 };
+    materials.expect(rounds * pixels.iter().sum::<u64>());
     // Each thread looks with one view at a time.
     let looked = pixels.iter().max().copied().unwrap_or(0) * LOOKED_BYTES * rayon::current_num_threads() as u64;
     let (stopped, stop) = (|| materials.stopped(), || Problem::error("", "stopped"));
@@ -195,14 +198,27 @@ fn bytes(map: &Map, levels: usize, side: Option<usize>) -> u64 {
     entries as u64 * report::ENTRY_BYTES + side.map_or(0, |side| (cells * side * side) as u64 * ELEMENT_BYTES)
 }
 
-/// The most memory that a map may take: if each of its views tells each cell something.
+/// The most memory that a map may take, before it is known what its views see: if each tells each cell something.
 fn most_bytes(wanted: &Wanted, side: Option<usize>) -> u64 {
     let atlas = atlas::Atlas::new(&wanted.mesh, wanted.by);
-    let levels = wanted.levels.unwrap_or_else(|| Cells::fitting(&atlas, wanted.first, MOST_LEVELS));
+    let levels = wanted.levels.unwrap_or_else(|| Cells::fitting(&atlas, wanted.first, likely_levels(wanted)));
     let cells: f64 = (1..=levels).map(|levels| Cells::most(&atlas, wanted.first, levels)).sum();
     let of_cell =
         wanted.views.len() as u64 * report::ENTRY_BYTES + side.map_or(0, |side| (side * side) as u64 * ELEMENT_BYTES);
     (cells as u64).saturating_mul(of_cell)
+}
+
+/// How many layers there would be if each view saw the mesh straight from the front, and as near as its nearest vertex.
+fn likely_levels(wanted: &Wanted) -> usize {
+    let mesh = &wanted.mesh;
+    let area: f64 = (0..mesh.triangles.len()).map(|triangle| atlas::normal(mesh, triangle).length() / 2.0).sum();
+    let cells = 0.5 / area * f64::from(wanted.first * wanted.first);
+    let depth = |view: &View| {
+        let far = mesh.vertices.iter().map(|vertex| view.camera.position.distance(vertex.position));
+        let nearest = far.min_by(f64::total_cmp)?;
+        Some(depth_of(cells * nearest * nearest / view.camera.focal_px.element_product()))
+    };
+    automatic(&wanted.views.iter().map(depth).collect::<Vec<_>>())
 }
 
 /// How a map that needs more than is left gets along with that: with fewer layers, or without arrays.
