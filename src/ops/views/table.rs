@@ -141,7 +141,7 @@ fn off(rows: &[Value]) -> impl Iterator<Item = String> {
         let (view, share) = (row["view"].as_str().unwrap_or_default(), row["share"].as_f64().unwrap_or_default());
         let why = match share < usual * COVERED {
             true => format!("from its camera {:.0} % of what is seen are other views", 100.0 * (1.0 - share)),
-            false => "its camera is probably off".to_owned(),
+            false => "its camera is off, or other views show something else there".to_owned(),
         };
         Some(format!("{view}: comes back with {psnr:.1} dB, the median is {median:.1}: {why}"))
     })
@@ -171,7 +171,7 @@ mod tests {
         assert_eq!(
             told,
             [
-                "off: comes back with 20.0 dB, the median is 36.0: its camera is probably off",
+                "off: comes back with 20.0 dB, the median is 36.0: its camera is off, or other views show something else there",
                 "under: comes back with 20.0 dB, the median is 36.0: from its camera 90 % of what is seen are other views",
             ]
         );
