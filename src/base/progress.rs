@@ -44,7 +44,7 @@ pub struct Watch<'a> {
 }
 
 impl Watch<'_> {
-    /// Nobody.
+    /// Nobody watches: it never ends early, and no piece is counted.
     pub const NONE: Watch<'static> = Watch { stopped: &|| false, done: &|_| () };
 }
 

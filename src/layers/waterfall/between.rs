@@ -195,7 +195,7 @@ impl<'a> Mixed<'a> {
     }
 }
 
-/// So many of them; what they hold is not said.
+/// So many of them, for work that writes each before it reads it.
 #[inline(always)]
 pub fn at_least<T: Copy + Default>(all: &mut Vec<T>, count: usize) -> &mut [T] {
     if all.len() < count {
@@ -204,7 +204,7 @@ pub fn at_least<T: Copy + Default>(all: &mut Vec<T>, count: usize) -> &mut [T] {
     &mut all[..count]
 }
 
-/// How often a number is to be halved to be 1 at most.
+/// How often a number has to be halved to be at most 1.
 fn halvings(mut number: f32) -> usize {
     let mut count = 0;
     while number > 1.0 {

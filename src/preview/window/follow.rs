@@ -50,7 +50,7 @@ impl App {
         self.send((ready.synth.clone(), by), Some(ready));
     }
 
-    /// Sends what is shown again, larger or smaller, where more or less of its pixels are seen than before.
+    /// Sends the scene that is shown to the GPU again, finer or coarser, if the zoom asks for that.
     pub(super) fn follow_zoom(&mut self) {
         let Some(show) = &self.shown else { return };
         let ((width, height), by) = (show.synth.size, show.frames.by);

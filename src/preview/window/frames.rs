@@ -6,7 +6,7 @@ use crate::render::reduce::reduced;
 
 /// Frames with no more pixels than this are made as they are.
 const SMALL: usize = 1 << 24;
-/// The longer side of a larger one before its place in the window is known, in pixels: not less, and not twice as much.
+/// The longer side of larger ones before their zoom is known, in pixels: at least this, and less than twice as much.
 const FIRST: f64 = 1024.0;
 
 /// A scene, moving and still.
@@ -30,7 +30,7 @@ impl Frames {
     }
 }
 
-/// How many times smaller a scene has to be for a GPU that holds pictures of at most `most` pixels a side.
+/// How many times smaller a scene has to be made for a GPU that holds pictures of at most `most` pixels a side.
 pub fn held(synth: &Synth, most: usize) -> usize {
     let read = synth.layers.iter().map(|layer| layer.largest_texture());
     let largest = read.chain([synth.size.0, synth.size.1]).max().unwrap_or(1);

@@ -32,7 +32,7 @@ pub struct Show {
     pub synth: Synth,
     /// As large as it is drawn.
     pub frames: Frames,
-    /// How many times smaller it is to stay, as there was no room for more.
+    /// Frames stay at least so many times smaller: the GPU had no room for finer ones.
     pub coarsest: usize,
     /// Marks beside those of the overlays.
     pub marks: Vec<Mark>,

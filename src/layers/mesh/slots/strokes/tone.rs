@@ -97,14 +97,14 @@ pub fn threshold(share: f32, even: bool) -> f32 {
     if even { (normal - std::f32::consts::SQRT_2 * wave(share / 2.0).0) / 2.0 } else { normal }
 }
 
-/// The share of ink at a tone: none from `from` on, all up to `to`.
+/// The share of ink at a tone: 0 from `from` on, 1 up to `to`.
 #[inline(always)]
 pub fn share(tone: f32, from: f32, to: f32) -> f32 {
-    // Where they are equal, less than that is infinitely much, and that itself nothing.
+    // If `from` is `to`, lower tones give infinity, which is all ink, and that tone itself NaN, which is none.
     within((from - tone) / (from - to))
 }
 
-/// A number, but at least 0 and at most 1; 0 where it is none.
+/// A number clamped to 0 to 1; 0 if it is not a number.
 #[inline(always)]
 pub fn within(x: f32) -> f32 {
     let least = if x > 0.0 { x } else { 0.0 };
