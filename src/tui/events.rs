@@ -175,7 +175,12 @@ pub enum Effect {
     /// Ask the windows for what they have not told yet.
     Ask,
     /// Open a picture in another program.
-    EditImage(PathBuf),
+    EditImage {
+        /// The picture.
+        path: PathBuf,
+        /// What has been done before that, which is told with it.
+        after: Option<String>,
+    },
     /// Draw the whole screen again.
     Redraw,
     /// Stop the process as Ctrl-Z does in a shell.

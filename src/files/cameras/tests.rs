@@ -129,6 +129,34 @@ fn a_field_of_view_is_of_the_size_of_the_picture() {
 }
 
 #[test]
+fn numbers_that_a_list_leaves_out_come_from_the_picture() {
+    let folder = folder(&[]);
+    image::RgbImage::new(6, 4).save(folder.path().join("a.png")).unwrap();
+    let shot = |list: Value, own: Value| {
+        let text = transforms(|whole, frame| {
+            *whole = list.clone();
+            frame["file_path"] = json!("a.png");
+            frame.as_object_mut().unwrap().extend(own.as_object().unwrap().clone());
+        });
+        fs::write(folder.path().join("t.json"), text).unwrap();
+        let Shot { focal_px, center_px, size_px, .. } = read_in(&folder, "t.json", false).unwrap().shots[0].1;
+        (focal_px, center_px, size_px.unwrap())
+    };
+    for (list, own, expected) in [
+        (json!({ "fl_x": 9, "cx": 2 }), json!({}), ([9.0, 9.0], Some([2.0, 2.0]), [6, 4])),
+        (json!({ "fl_x": 9, "cy": 1 }), json!({}), ([9.0, 9.0], Some([3.0, 1.0]), [6, 4])),
+        (json!({ "fl_x": 9, "w": 12 }), json!({}), ([9.0, 9.0], None, [12, 4])),
+        (json!({ "fl_x": 9, "h": 8, "cx": 2 }), json!({}), ([9.0, 9.0], Some([2.0, 4.0]), [6, 8])),
+        // A frame's own numbers win, each in the place of the list's.
+        (json!({ "fl_x": 9, "fl_y": 8 }), json!({ "fl_y": 7 }), ([9.0, 7.0], None, [6, 4])),
+        (json!({ "fl_x": 9, "fl_y": 8 }), json!({ "fl_x": 7 }), ([7.0, 7.0], None, [6, 4])),
+        (json!({ "fl_y": 8, "cx": 1, "cy": 1 }), json!({ "cx": 5 }), ([8.0, 8.0], Some([5.0, 1.0]), [6, 4])),
+    ] {
+        assert_eq!(shot(list.clone(), own.clone()), expected, "{list} {own}");
+    }
+}
+
+#[test]
 fn pictures_for_testing_are_left_out() {
     let mut test = our_view();
     test["split"] = json!("test");
@@ -188,14 +216,20 @@ fn what_is_refused_names_its_place_and_the_cure() {
         (json!({ "camera_model": "OPENCV_FISHEYE" }), "camera_model: a fisheye is no pinhole"),
         (json!({ "fl_x": null, "camera_angle_x": 4 }), "camera_angle_x is not between 0 and pi radians: 4"),
         (json!({ "camera_model": "ORTHOGRAPHIC" }), "an orthographic camera is no pinhole"),
+        (json!({ "camera_model": "EQUIRECTANGULAR" }), "camera_model: a panorama is no pinhole"),
+        (json!({ "k6": 0.1 }), "k6 is not 0: the camera has distortion"),
         (json!({ "fl_x": -1 }), "a focal length is not above 0"),
     ] {
         let text = transforms(|list, _| list.as_object_mut().unwrap().extend(change.as_object().unwrap().clone()));
         let found = message(&folder(&[("a.json", &text)]), "a.json");
         assert!(found.contains(expected), "{found}");
     }
-    let stretched = transforms(|_, frame| frame["transform_matrix"][0][0] = json!(5));
-    assert!(message(&folder(&[("a.json", &stretched)]), "a.json").contains("is no rotation"));
+    for (row, column, expected) in [(0, 0, "is no rotation"), (3, 3, "the last row of transform_matrix is not 0 0 0 1")]
+    {
+        let stretched = transforms(|_, frame| frame["transform_matrix"][row][column] = json!(5));
+        let found = message(&folder(&[("a.json", &stretched)]), "a.json");
+        assert!(found.contains(expected), "{found}");
+    }
     for text in ["{}", "a,b\n", "[1]"] {
         assert!(
             message(&folder(&[("a.txt", text)]), "a.txt").contains("is no list of cameras that is known"),

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use glam::{DMat3, DVec3};
 use serde_json::Value;
 
-use super::list::{Cameras, Item, Reading, folder, is_there, size};
+use super::list::{Cameras, Item, Reading, folder, is_there, numbers, size};
 use crate::base::error::{Error, Result};
 use crate::base::geometry::Xy;
 use crate::base::maths;
@@ -15,7 +15,17 @@ use crate::files::picture;
 use crate::layers::parts::shots::Shot;
 
 /// Numbers of distortion.
-const DISTORTION: [&str; 6] = ["k1", "k2", "k3", "k4", "p1", "p2"];
+const DISTORTION: [&str; 8] = ["k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2"];
+/// Parts of the names of camera models that are no pinholes, and what those are.
+const NO_PINHOLES: [(&str, &str); 7] = [
+    ("FISHEYE", "a fisheye"),
+    ("ORTHO", "an orthographic camera"),
+    ("EQUIRECT", "a panorama"),
+    ("SPHERICAL", "a panorama"),
+    ("PANO", "a panorama"),
+    ("OMNI", "a panorama"),
+    ("VR180", "a panorama"),
+];
 /// What is tried behind a path without an ending.
 const ENDS: [&str; 3] = ["png", "jpg", "jpeg"];
 /// How much the columns of a matrix may differ in length, or from a right angle.
@@ -55,19 +65,25 @@ fn shot(own: &Item, common: &Item, picture: &Path, reading: &Reading) -> Result<
     refuse_bent(own)?;
     refuse_bent(common)?;
     let number = |name: &str| Ok::<_, Error>(own.number(name)?.or(common.number(name)?));
-    let size_px = match (number("w")?, number("h")?) {
-        (Some(width), Some(height)) => {
-            size(width, height).ok_or_else(|| own.error(format!("w and h are no size ({width} and {height})")))?
-        }
-        _ => {
-            let (width, height) = picture::size(picture, reading.limits)?;
-            [width as u32, height as u32]
+    let (width, height) = match (number("w")?, number("h")?) {
+        (Some(width), Some(height)) => (width, height),
+        (width, height) => {
+            let of_picture = picture::size(picture, reading.limits)?;
+            (width.unwrap_or(of_picture.0 as f64), height.unwrap_or(of_picture.1 as f64))
         }
     };
+    let size_px =
+        size(width, height).ok_or_else(|| own.error(format!("w and h are no size ({width} and {height})")))?;
     let focal_px = own.focal(focal(own, common, size_px)?)?;
-    let center = (number("cx")?, number("cy")?);
-    let center_px = center.0.zip(center.1).map(|(x, y)| [x, y]);
+    let center_px = match (number("cx")?, number("cy")?) {
+        (None, None) => None,
+        (x, y) => Some([x.unwrap_or(width / 2.0), y.unwrap_or(height / 2.0)]),
+    };
     let rows = own.rows::<4, 3>("transform_matrix")?;
+    let last = own.fields["transform_matrix"].get(3).and_then(Value::as_array).and_then(|row| numbers::<4>(row));
+    if last.is_some_and(|last| last != [0.0, 0.0, 0.0, 1.0]) {
+        return Err(own.error("the last row of transform_matrix is not 0 0 0 1"));
+    }
     let column = |i: usize| DVec3::new(rows[0][i], rows[1][i], rows[2][i]);
     let axes = [column(0), column(1), column(2)];
     let scale = axes.iter().map(|axis| axis.length()).sum::<f64>() / 3.0;
@@ -83,16 +99,18 @@ fn shot(own: &Item, common: &Item, picture: &Path, reading: &Reading) -> Result<
     Ok((shot, scale))
 }
 
-/// Focal lengths, of the frame where it has any.
+/// Focal lengths, of the frame where it has any. Where one alone is known, pixels are square.
 fn focal(own: &Item, common: &Item, [width, height]: [u32; 2]) -> Result<Xy> {
-    for item in [own, common] {
+    let of = |item: &Item| {
         let across = length(item, ["fl_x", "camera_angle_x"], width)?;
-        let down = length(item, ["fl_y", "camera_angle_y"], height)?;
-        if let Some(across) = across.or(down) {
-            return Ok([across, down.unwrap_or(across)]);
-        }
-    }
-    Err(own.error("camera_angle_x is missing, and fl_x too"))
+        Ok::<_, Error>((across, length(item, ["fl_y", "camera_angle_y"], height)?))
+    };
+    Ok(match (of(own)?, of(common)?) {
+        ((Some(across), down), _) | ((None, None), (Some(across), down)) => [across, down.unwrap_or(across)],
+        ((None, Some(down)), (across, _)) => [across.unwrap_or(down), down],
+        ((None, None), (None, Some(down))) => [down, down],
+        ((None, None), (None, None)) => return Err(own.error("camera_angle_x is missing, and fl_x too")),
+    })
 }
 
 /// A focal length in pixels, by itself or by the angle in radians that a side of the picture fills.
@@ -118,12 +136,10 @@ fn refuse_bent(item: &Item) -> Result<()> {
     }
     let model = item.fields.get("camera_model").and_then(Value::as_str).unwrap_or_default().to_ascii_uppercase();
     let is_fisheye = item.fields.get("is_fisheye").and_then(Value::as_bool) == Some(true);
-    let bent = [
-        ("is_fisheye", is_fisheye, "a fisheye"),
-        ("camera_model", model.contains("FISHEYE"), "a fisheye"),
-        ("camera_model", model.contains("ORTHO"), "an orthographic camera"),
-    ];
-    bent.into_iter().find(|(_, is_so, _)| *is_so).map_or(Ok(()), |(field, _, what)| {
+    let by_model =
+        NO_PINHOLES.into_iter().find(|(part, _)| model.contains(part)).map(|(_, what)| ("camera_model", what));
+    let bent = is_fisheye.then_some(("is_fisheye", "a fisheye")).or(by_model);
+    bent.map_or(Ok(()), |(field, what)| {
         let error = item.error(format!("{field}: {what} is no pinhole"));
         Err(error.cure("render or undistort the pictures with a perspective camera"))
     })

@@ -145,6 +145,7 @@ fn edit(
             edits.push(edit);
             layer
         }
+        (Err(why), _) if args.layer.is_some() => return Err(wrong(why)),
         (Err(why), _) => {
             return Err(wrong(why).cure("plica new MODEL makes a scene with one"));
         }
@@ -175,7 +176,7 @@ fn edit(
 fn odd(document: &Document, layer: usize, mesh: Mesh) -> Vec<Problem> {
     let Some((name, _)) = shots::mesh_of(document, layer) else { return Vec::new() };
     let meshes = [(name.to_owned(), Arc::new(mesh))].into();
-    table::odd(document.scene(), layer, &Materials { meshes, ..Materials::default() })
+    table::odd(document, layer, &Materials { meshes, ..Materials::default() })
 }
 
 fn shot_of(picture: &Picture) -> Option<Shot> {

@@ -14,7 +14,7 @@ use crate::ops::opened::Opened;
 use crate::ops::scene_options::SceneOptions;
 use crate::ops::sprites::none;
 use crate::ops::watched::in_pieces;
-use crate::scene::Scene;
+use crate::scene::{Document, Scene, address};
 
 /// What is listed.
 #[derive(clap::Args)]
@@ -66,7 +66,7 @@ pub fn run(args: &Listing, context: &mut Context) -> Result<()> {
             context.print(if args.json { line(name, row) } else { words(row, width) })?;
         }
         off(&rows).for_each(|told| context.messages.say(&told));
-        let odd = odd(scene, layer, &opened.materials);
+        let odd = odd(&opened.document, layer, &opened.materials);
         odd.iter().for_each(|problem| context.messages.say(&problem.to_string()));
     }
     if any { Ok(()) } else { Err(none(scene, args.layer.as_deref(), "views")) }
@@ -79,9 +79,10 @@ pub fn count(scene: &Scene, layer: usize) -> usize {
 }
 
 /// What is odd about how pictures lie on a layer, as far as the files that it names tell.
-pub fn odd(scene: &Scene, layer: usize, materials: &Materials) -> Vec<Problem> {
-    let odd = scene.layers.get(layer).map(|layer| layer.technique().check_lying(materials));
-    odd.unwrap_or_default().into_iter().map(|problem| problem.under(&format!("/layers/{layer}"))).collect()
+pub fn odd(document: &Document, layer: usize, materials: &Materials) -> Vec<Problem> {
+    let odd = document.scene().layers.get(layer).map(|layer| layer.technique().check_lying(materials));
+    let odd = odd.unwrap_or_default().into_iter().map(|problem| problem.under(&format!("/layers/{layer}")));
+    odd.map(|problem| address::of_problem(document, &problem)).collect()
 }
 
 fn line(layer: &str, row: &Value) -> String {

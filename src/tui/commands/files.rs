@@ -144,6 +144,6 @@ fn image(state: &mut State, call: &Call) -> Done {
     // Only a path that the scene is allowed to name is opened.
     paths::open(state.scene.path(), path, state.scene.options()).map_err(|error| error.to_string())?;
     let path = std::path::absolute(paths::beside(state.scene.path(), path)).map_err(|error| error.to_string())?;
-    state.ask(Effect::EditImage(path));
+    state.ask(Effect::EditImage { path, after: None });
     Ok(())
 }

@@ -118,11 +118,12 @@ pub fn drawn(state: &mut State, result: Result<(Wanted, Drawn), String>) {
     if state.outside.work.take().is_none() {
         return;
     }
-    let told = result.and_then(|(wanted, drawn)| lay(state, &wanted, &drawn));
-    state.tell_beside(told.map_err(|why| format!("{ADDING}: {why}")));
+    if let Err(why) = result.and_then(|(wanted, drawn)| lay(state, &wanted, &drawn)) {
+        state.tell_beside(Err(format!("{ADDING}: {why}")));
+    }
 }
 
-fn lay(state: &mut State, wanted: &Wanted, drawn: &Drawn) -> Result<String, String> {
+fn lay(state: &mut State, wanted: &Wanted, drawn: &Drawn) -> Done {
     let laid = wanted.lay((state.scene.path(), state.document()), drawn);
     let (layer, applied, picture) = laid.map_err(|error| error.to_string())?;
     state.edit(applied.edit, false)?;
@@ -130,9 +131,9 @@ fn lay(state: &mut State, wanted: &Wanted, drawn: &Drawn) -> Result<String, Stri
     if let Some(last) = count.checked_sub(1) {
         paint_on(state, layer, last);
     }
-    let picture = std::path::absolute(picture).map_err(|error| error.to_string())?;
-    state.ask(Effect::EditImage(picture));
-    Ok(plain(&applied.told))
+    let path = std::path::absolute(picture).map_err(|error| error.to_string())?;
+    state.ask(Effect::EditImage { path, after: Some(plain(&applied.told)) });
+    Ok(())
 }
 
 /// Why nothing is seen of the scene yet.

@@ -72,7 +72,7 @@ impl Editor {
                 None => text.lines().for_each(terminal::print),
             },
             Effect::Cancel => self.job.iter().for_each(Job::cancel),
-            Effect::EditImage(path) => self.edit_image(&path),
+            Effect::EditImage { path, after } => self.edit_image(&path, after),
             Effect::View(None) => self.open_window(),
             Effect::View(Some(command)) => self.preview.view(&command),
             Effect::Look(camera) => self.preview.look(camera.map(|camera| *camera)),
@@ -118,12 +118,11 @@ impl Editor {
     }
 
     /// Opens a picture in another program. Only if it is a picture: a desktop may run other files instead of opening them.
-    fn edit_image(&mut self, path: &Path) {
-        let opened = picture::size(path, &self.options.files.limits).map_err(|error| error.to_string());
-        match opened.and_then(|_| image_editor::open(path)) {
-            Ok(said) => self.state.say(said),
-            Err(why) => self.state.complain(why),
-        }
+    /// Opens a picture in another program, and tells how that went behind what was done before.
+    fn edit_image(&mut self, path: &Path, after: Option<String>) {
+        let read = picture::size(path, &self.options.files.limits).map_err(|error| error.to_string());
+        let opened = read.and_then(|_| image_editor::open(path));
+        self.state.opened_image(after, opened);
     }
 
     /// Reads the person's own keys, and shows the mistakes in them.

@@ -148,6 +148,16 @@ impl State {
         self.tell(Message { stays: true, ..Message::new(text, bad) });
     }
 
+    /// Tells how the opening of a picture in another program went, behind what was done before that and beside the keys.
+    pub fn opened_image(&mut self, after: Option<String>, opened: Result<String, String>) {
+        match (after, opened) {
+            (None, Ok(said)) => self.say(said),
+            (None, Err(why)) => self.complain(why),
+            (Some(done), Ok(said)) => self.tell_beside(Ok(format!("{done}; {said}"))),
+            (Some(done), Err(why)) => self.tell_beside(Err(format!("{done}, but {why}"))),
+        }
+    }
+
     /// Shows a message, and remembers it for `:messages`. What went wrong beside the keys gives way once it has been seen.
     fn tell(&mut self, message: Message) {
         self.memory.hear(message.clone());

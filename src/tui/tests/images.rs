@@ -28,6 +28,6 @@ pub fn a_picture_of_the_scene_is_opened_and_nothing_else() {
         let mut state = crate::tui::state::State::new(scene, (80, 24), crate::tui::text::color::Depth::None);
         run(&mut state, line, None);
         let asked = state.effects.pop_front();
-        assert!(matches!(&asked, Some(Effect::EditImage(path)) if path.ends_with("cat.png")), "{line}");
+        assert!(matches!(&asked, Some(Effect::EditImage { path, after: None }) if path.ends_with("cat.png")), "{line}");
     }
 }

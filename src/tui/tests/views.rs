@@ -49,6 +49,15 @@ fn show(state: &mut State) {
     state.picture.synth = Some(Arc::new(render::synth(&scene, &materials, None).unwrap()));
 }
 
+/// As the editor does once it has opened the picture, or has not.
+fn told_of_image(state: &mut State, effects: &[Effect], opened: Result<String, String>) {
+    let after = effects.iter().find_map(|effect| match effect {
+        Effect::EditImage { after, .. } => Some(after.clone()),
+        _ => None,
+    });
+    after.into_iter().for_each(|after| state.opened_image(after, opened.clone()));
+}
+
 fn run(state: &mut State, line: &str) -> (String, Vec<Effect>) {
     let mut effects = press(state, &format!(": \"{line}\" Enter"));
     // As the editor does beside the keys.
@@ -58,6 +67,7 @@ fn run(state: &mut State, line: &str) -> (String, Vec<Effect>) {
         let drawn = asked.wanted.draw(&asked.document, &asked.synth, &Watch::NONE).map_err(|error| error.to_string());
         effects.extend(update(state, Event::Drawn(Box::new(drawn.map(|drawn| (asked.wanted, drawn))))));
     }
+    told_of_image(state, &effects, Ok("gimp has the picture".into()));
     (state.message.as_ref().map(|message| message.text.clone()).unwrap_or_default(), effects)
 }
 
@@ -66,9 +76,14 @@ fn what_is_seen_is_painted_over_from_where_it_is_seen() {
     let folder = tempfile::tempdir().unwrap();
     let mut state = opened(folder.path());
     let (told, effects) = run(&mut state, "views add flowers");
-    assert_eq!(told, "1 picture laid on wall; 5 pictures of it as it was are its base coat");
+    assert_eq!(told, "1 picture laid on wall; 5 pictures of it as it was are its base coat; gimp has the picture");
+    press(&mut state, "j");
+    assert_eq!(said_last(&state).1, told, "keys are gone on with beside it");
     let picture = folder.path().join("views/flowers.png");
-    assert!(effects.iter().any(|effect| matches!(effect, Effect::EditImage(path) if *path == picture)), "{effects:?}");
+    assert!(
+        effects.iter().any(|effect| matches!(effect, Effect::EditImage { path, .. } if *path == picture)),
+        "{effects:?}"
+    );
     let [own, guide] = ["flowers", "flowers-guide"].map(|name| folder.path().join(format!("views/{name}.png")));
     let [own, guide] = [own, guide].map(|path| std::fs::read(path).unwrap());
     assert_eq!(own, guide);
@@ -281,8 +296,10 @@ fn keys_do_not_wait_for_what_is_painted_on() {
     };
     let event = |drawn| Event::Drawn(Box::new(drawn));
     let ended = event(drawn(&state).map(|drawn| (asked.wanted.clone(), drawn)));
-    update(&mut state, ended);
-    assert_eq!(said_last(&state).1, "1 picture laid on wall; 5 pictures of it as it was are its base coat");
+    let effects = update(&mut state, ended);
+    told_of_image(&mut state, &effects, Err("there is no gimp here".into()));
+    let told = "1 picture laid on wall; 5 pictures of it as it was are its base coat, but there is no gimp here";
+    assert_eq!(said_last(&state), (true, told.to_owned()));
     assert_eq!(at(&state, "/layers/0/pose/scale"), json!(3));
     let count = |state: &State| at(state, "/layers/0/surface/views").as_array().unwrap().len();
     assert_eq!(count(&state), 6);

@@ -8,11 +8,14 @@ use super::model::{BlendPoint, Extremes, View, ViewCamera, ViewMap};
 use crate::base::geometry::Xy;
 use crate::base::maths;
 use crate::base::problem::Problem;
+use crate::base::text::short;
 use crate::layers::check as rules;
 use crate::layers::parts::shots::Feeds;
 
 /// How far a matrix may be from a rotation.
 const ROTATION_OFF: f64 = 1e-3;
+/// The most directions to a side of an array.
+const MOST_DIRECTIONS: f64 = 32.0;
 
 /// The checks beyond shape.
 pub fn problems(map: &ViewMap) -> Vec<Problem> {
@@ -20,7 +23,8 @@ pub fn problems(map: &ViewMap) -> Vec<Problem> {
     let mut problems = rules::names(names);
     problems.extend(rules::color(&map.missing, "/missing"));
     for (i, view) in map.views.iter().enumerate() {
-        problems.extend(of_view(view).into_iter().map(|problem| problem.under(&format!("/views/{i}"))));
+        let odd = of_view(view).into_iter().chain(map.directions.and_then(|side| narrow(view, side)));
+        problems.extend(odd.map(|problem| problem.under(&format!("/views/{i}"))));
     }
     for (i, point) in map.blend.points.iter().enumerate() {
         problems.extend(of_blend_point(point).map(|problem| problem.under(&format!("/blend/points/{i}"))));
@@ -42,6 +46,25 @@ fn of_view(view: &View) -> Vec<Problem> {
         problems.push(problem.hint("set its kind to both or dependent, or its extremes to auto"));
     }
     problems
+}
+
+/// A cone that falls between the elements of the arrays of directions, which have so many to a side.
+fn narrow(view: &View, side: u32) -> Option<Problem> {
+    let Extremes::Cone { degrees } = view.extremes else { return None };
+    // Of the directions near the normal, where elements are narrowest.
+    let element = (4.0 / f64::from(side)).to_degrees();
+    let counts = view.active && view.kind != Feeds::Independent;
+    (counts && degrees < element).then(|| {
+        let message = format!(
+            "a cone of {degrees} degrees to each side is narrower than two elements of {side} x {side} directions, {} degrees",
+            short(2.0 * element, 1)
+        );
+        let wanted = (4.0_f64.to_degrees() / degrees).ceil();
+        Problem::warning("/extremes", message).hint(match wanted <= MOST_DIRECTIONS {
+            true => format!("set directions to {wanted}, or take it out: they are exact then"),
+            false => "take directions out: they are exact then".to_owned(),
+        })
+    })
 }
 
 fn of_blend_point(point: &BlendPoint) -> Option<Problem> {
@@ -166,6 +189,37 @@ mod tests {
             assert_eq!(found.len(), 1, "{view}: {found:?}");
             assert_eq!(found[0].0, format!("/views/0{path}"), "{view}");
             assert!(found[0].1.contains(message), "{found:?}");
+        }
+    }
+
+    #[test]
+    fn a_cone_is_wider_than_two_elements() {
+        let exact = "take directions out: they are exact then";
+        let odd = |side: Value, view: Value| {
+            let mut whole = json!({ "name": "a", "image": "a", "camera": { "position": [0, 0, 4] } });
+            whole.as_object_mut().unwrap().extend(view.as_object().unwrap().clone());
+            let map = serde_json::from_value(json!({ "directions": side, "views": [whole] })).unwrap();
+            problems(&map).into_iter().map(|problem| problem.to_string()).collect::<String>()
+        };
+        let cone = |degrees: f64| json!({ "extremes": { "kind": "cone", "degrees": degrees } });
+        // An element is 28.6 degrees wide of 8 to a side, 14.3 of 16.
+        for (side, view, told) in [
+            (json!(8), cone(29.0), ""),
+            (
+                json!(8),
+                cone(28.0),
+                "two elements of 8 x 8 directions, 57.3 degrees (set directions to 9, or take it out",
+            ),
+            (json!(16), cone(15.0), ""),
+            (json!(16), cone(14.0), "narrower than two elements of 16 x 16 directions, 28.6 degrees"),
+            (json!(16), cone(7.0), exact),
+            (Value::Null, cone(1.0), ""),
+            (json!(4), json!({ "active": false, "extremes": { "kind": "cone", "degrees": 10 } }), ""),
+            (json!(4), json!({}), ""),
+        ] {
+            let found = odd(side.clone(), view.clone());
+            let is_told = found.starts_with("views.0.extremes: warning: a cone of ") && found.contains(told);
+            assert!(if told.is_empty() { found.is_empty() } else { is_told }, "{side} {view}: {found}");
         }
     }
 
