@@ -209,7 +209,10 @@ fn what_is_refused_names_its_place_and_the_cure() {
         let project = folder(&[(&format!("sparse/{file}"), "")]);
         assert!(message(&project, "").contains(told), "{}", message(&project, ""));
     }
+}
 
+#[test]
+fn transforms_that_are_no_pinholes_or_no_rotations_are_refused() {
     for (change, expected) in [
         (json!({ "k1": 0.1 }), "k1 is not 0: the camera has distortion"),
         (json!({ "is_fisheye": true }), "the list: is_fisheye: a fisheye is no pinhole"),
@@ -230,6 +233,10 @@ fn what_is_refused_names_its_place_and_the_cure() {
         let found = message(&folder(&[("a.json", &stretched)]), "a.json");
         assert!(found.contains(expected), "{found}");
     }
+}
+
+#[test]
+fn other_lists_are_told_as_ones_that_are_not_known() {
     for text in ["{}", "a,b\n", "[1]"] {
         assert!(
             message(&folder(&[("a.txt", text)]), "a.txt").contains("is no list of cameras that is known"),
