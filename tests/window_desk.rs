@@ -64,6 +64,18 @@ impl Desk {
     fn focused(&self) -> String {
         String::from_utf8(self.display.tool("xdotool", &["getactivewindow", "getwindowname"])).unwrap()
     }
+
+    /// Puts the window away, and waits until the other one has the keyboard: what the manager says before that is old.
+    fn put_away(&self, view: &mut View<'_>) {
+        self.display.tool("xdotool", &["windowminimize", "--sync", &view.window]);
+        view.until("the keyboard in the terminal", |_| self.focused().contains("terminal"));
+    }
+
+    /// Brings the window back, with the keyboard.
+    fn bring_back(&self, view: &mut View<'_>) {
+        self.display.tool("xdotool", &["windowactivate", "--sync", &view.window]);
+        view.until("the keyboard", |_| self.focused().contains("plica"));
+    }
 }
 
 impl Drop for Desk {
@@ -96,18 +108,18 @@ fn a_window_that_is_put_away_draws_nothing() {
     let place = Place::new();
     let mut view = View::of(&desk.display, &mut place.command());
     view.until("a picture", |v| v.shot().cells().iter().any(|p| p[0] > 200));
-    desk.display.tool("xdotool", &["windowminimize", "--sync", &view.window]);
-    desk.display.tool("xdotool", &["windowactivate", "--sync", &view.window]);
+    desk.put_away(&mut view);
+    desk.bring_back(&mut view);
     view.keys(&["P"]);
     let shot = view.shot();
     view.until("something that moves", |v| v.shot() != shot);
-    desk.display.tool("xdotool", &["windowminimize", "--sync", &view.window]);
+    desk.put_away(&mut view);
     sleep(Duration::from_millis(1500));
     let before = cpu(&view);
     sleep(Duration::from_millis(2000));
     let worked = cpu(&view) - before;
     assert!(worked < 0.5, "{worked} s of work in 2 s, hidden");
-    desk.display.tool("xdotool", &["windowactivate", "--sync", &view.window]);
+    desk.bring_back(&mut view);
     let shot = view.shot();
     view.until("something that moves again", |v| v.shot().cells().len() > 1 && v.shot() != shot);
 }
