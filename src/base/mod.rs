@@ -13,6 +13,7 @@ pub mod fault;
 pub mod geometry;
 pub mod half;
 pub mod keys;
+pub mod last;
 pub mod mask;
 pub mod maths;
 pub mod mesh;

@@ -1,12 +1,13 @@
 //! Several ways of one scene side by side, as a single layer that the CPU draws.
 
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
-use std::sync::{Arc, Mutex, PoisonError};
 
 use super::made::LastMade;
 use super::reduce::reduced;
 use super::stage::{Group, Stage};
 use super::{Synth, cpu};
+use crate::base::last::Last;
 use crate::base::pixels::{Linear, Rgba, side_by_side};
 use crate::base::reduce::Reduced;
 use crate::layers::parts::moment::{Columns, Moment};
@@ -19,7 +20,7 @@ pub struct Beside {
     /// Their syntheses.
     pub ways: Vec<Synth>,
     /// The last frame, with its time: whoever wants some of its pixels wants others next.
-    last: Arc<Mutex<Option<(f64, Arc<Linear>)>>>,
+    last: Last<f64, Linear>,
 }
 
 impl Beside {
@@ -32,7 +33,7 @@ impl Beside {
     }
 
     fn of(ways: Vec<Synth>) -> Arc<dyn Ready> {
-        Arc::new(Beside { ways, last: Arc::default() })
+        Arc::new(Beside { ways, last: Last::default() })
     }
 
     fn each(&self, way: impl Fn(&Synth) -> Synth) -> Arc<dyn Ready> {
@@ -40,14 +41,8 @@ impl Beside {
     }
 
     fn frame(&self, t: f64) -> Arc<Linear> {
-        let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, frame)) = last.as_ref().filter(|(time, _)| *time == t) {
-            return frame.clone();
-        }
-        let frames: Vec<Linear> = self.ways.iter().map(|way| cpu::linear(way, t)).collect();
-        let frame = Arc::new(side_by_side(&frames));
-        *last = (!self.ways.iter().any(Synth::is_stopped)).then(|| (t, frame.clone()));
-        frame
+        let make = || side_by_side(&self.ways.iter().map(|way| cpu::linear(way, t)).collect::<Vec<_>>());
+        self.last.get(|time, _| *time == t, make, || (!self.ways.iter().any(Synth::is_stopped)).then_some(t))
     }
 }
 

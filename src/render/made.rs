@@ -1,11 +1,12 @@
 //! What is made of a scene: all that its frames need, and what was made whole of the last of them (`whole.rs`).
 
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex};
 
 #[cfg(feature = "window")]
 use super::stage::Group;
 use super::stage::Stage;
+use crate::base::last::Last;
 use crate::base::pixels::Rgba;
 use crate::base::problem::Problem;
 use crate::layers::parts::moment::Moment;
@@ -123,11 +124,9 @@ pub struct Wholes {
 /// What was made whole last, for those who want some pixels after others: of a frame, and of a pass.
 #[derive(Clone, Debug, Default)]
 pub struct LastMade {
-    pub(super) frame: Slot<Wholes>,
-    pub(super) pass: Slot<DrawnPass>,
+    pub(super) frame: Last<MadeOf, Wholes>,
+    pub(super) pass: Last<MadeOf, DrawnPass>,
 }
-
-pub(super) type Slot<T> = Arc<Mutex<Option<(MadeOf, Arc<T>)>>>;
 
 /// What of a pass is drawn on surfaces.
 #[derive(Debug)]

@@ -2,12 +2,13 @@
 //! for all samples of a pixel from one frame that is as many times larger.
 
 use std::borrow::Cow;
-use std::sync::{Arc, PoisonError};
+use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::made::{DrawnPass, LastMade, MadeOf, Slot, Synth, Whole, Wholes};
+use super::made::{DrawnPass, LastMade, MadeOf, Synth, Whole, Wholes};
 use super::stage::Group;
+use crate::base::last::Last;
 use crate::base::pixels::Rgba;
 use crate::layers::parts::moment::{Columns, Moment};
 use crate::layers::parts::pass::{COLOR, Which};
@@ -32,9 +33,9 @@ impl LastMade {
     }
 }
 
-/// What a slot holds, if it was made of the same and fits, or what is made now.
+/// What was made last, if it was made of the same and fits, or what is made now.
 fn kept<T>(
-    slot: &Slot<T>,
+    last: &Last<MadeOf, T>,
     (synth, scene_time): (&Synth, f64),
     fits: impl Fn(&T) -> bool,
     make: impl FnOnce() -> T,
@@ -42,21 +43,12 @@ fn kept<T>(
     if !synth.has_strokes() {
         return Arc::new(make());
     }
-    let mut kept = slot.lock().unwrap_or_else(PoisonError::into_inner);
     let is_same = |(time, stage, layers): &MadeOf| {
         let mut pairs = layers.iter().zip(&synth.layers);
         *time == scene_time && *stage == synth.stage && pairs.all(|(own, other)| Arc::ptr_eq(own, other))
     };
-    if let Some((_, made)) = kept.as_ref().filter(|(made_of, made)| is_same(made_of) && fits(made)) {
-        return made.clone();
-    }
-    // Room for the next, before that is made.
-    *kept = None;
-    let made = Arc::new(make());
-    if !synth.is_stopped() {
-        *kept = Some(((scene_time, synth.stage.clone(), synth.layers.clone()), made.clone()));
-    }
-    made
+    let made_of = || (!synth.is_stopped()).then(|| (scene_time, synth.stage.clone(), synth.layers.clone()));
+    last.get(|made_of, made| is_same(made_of) && fits(made), make, made_of)
 }
 
 /// Colors, premultiplied, and how far away they are.

@@ -239,7 +239,12 @@ impl Still for MeshAt<'_> {
         if self.synth.strokes.is_none() {
             return self.surface(y, columns, &mut vec![f64::INFINITY; out.len()], out);
         }
-        let row = &self.alone.get_or_init(|| self.alone())[y * self.moment.size_px.0..];
+        let alone = self.alone.get().unwrap_or_else(|| {
+            // On all cores, so nobody may wait for it: a thread that does could be the one that is needed.
+            let made = self.alone();
+            self.alone.get_or_init(|| made)
+        });
+        let row = &alone[y * self.moment.size_px.0..];
         out.iter_mut().enumerate().for_each(|(cell, out)| *out = row[columns.at(cell)]);
     }
 

@@ -57,7 +57,10 @@ impl ReadySurface for LayerTexture {
         let still = self.0.layer.at(&own);
         let (width, height) = self.0.size_px;
         let mut picture = Linear::filled(width, height, [0.0; 4]);
-        let rows = picture.cells_mut().par_chunks_mut(width.max(1)).enumerate();
+        let (first, rest) = picture.cells_mut().split_at_mut(width);
+        // By itself: it makes what all of them are read from, which others would make again.
+        still.row(0, Columns::All, first);
+        let rows = rest.par_chunks_mut(width.max(1)).enumerate().map(|(y, row)| (y + 1, row));
         rows.for_each(|(y, row)| still.row(y, Columns::All, row));
         drop(still);
         Box::new(Still(picture))

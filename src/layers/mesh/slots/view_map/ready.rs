@@ -1,6 +1,6 @@
 //! A view map ready for any time, as the surface of a mesh.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 use serde_json::Value;
 
@@ -11,6 +11,7 @@ use super::map::{Map, Wanted};
 use super::{again, bundle, marks, painted, passes, plan, probe, round, told, upload, view};
 use crate::base::budget::Share;
 use crate::base::error::Error;
+use crate::base::last::Last;
 use crate::base::number;
 use crate::base::pixels::Linear;
 use crate::base::problem::Problem;
@@ -42,7 +43,7 @@ pub struct Ready {
     /// What is not there, as there was too little memory for it.
     pub lacks: Option<Problem>,
     /// What the camera of the view of this number sees, once that was asked for.
-    pub seen: Arc<Mutex<Option<(usize, Arc<Linear>)>>>,
+    pub seen: Last<usize, Linear>,
 }
 
 impl Ready {
@@ -57,13 +58,8 @@ impl Ready {
 
     /// What the camera of a view sees. That of one is kept.
     fn seen(&self, view: &view::View) -> Arc<Linear> {
-        let mut kept = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, seen)) = kept.as_ref().filter(|(number, _)| *number == view.number) {
-            return seen.clone();
-        }
-        let seen = Arc::new(again::seen(self.filled(), &self.points, view, &Watch::NONE));
-        *kept = Some((view.number, seen.clone()));
-        seen
+        let make = || again::seen(self.filled(), &self.points, view, &Watch::NONE);
+        self.seen.get(|number, _| *number == view.number, make, || Some(view.number))
     }
 
     /// Whether it is the map that is wanted, with arrays of so many directions a side.

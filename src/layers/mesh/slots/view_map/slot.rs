@@ -14,6 +14,7 @@ use super::view::View;
 use super::wanted::{laid_flat, misfits, wanted};
 use super::{atlas, bundle, check, lay, marks, passes, plan, warnings};
 use crate::base::budget::Share;
+use crate::base::last::Last;
 use crate::base::mesh::Mesh;
 use crate::base::pixels::encode;
 use crate::base::pointer::Pointer;
@@ -105,7 +106,7 @@ impl SurfaceSlot for ViewMap {
         let before = before.and_then(|before| before.downcast::<Ready>());
         let side = self.directions.map(|side| side as usize);
         if let Some(ready) = before.filter(|before| before.is_of(&wanted, side)) {
-            return Ok(Arc::new(Ready { points, seen: Arc::default(), ..ready.clone() }));
+            return Ok(Arc::new(Ready { points, seen: Last::default(), ..ready.clone() }));
         }
         // An incomplete map is no start for a complete one.
         let before = before.filter(|before| before.lacks.is_none()).map(|before| &*before.map);
@@ -187,7 +188,7 @@ fn ready(map: Map, arrays: Option<Arrays>, kept: Share, lacks: Option<Problem>) 
         kept: Arc::new(kept),
         side: None,
         lacks,
-        seen: Arc::default(),
+        seen: Last::default(),
     }
 }
 
