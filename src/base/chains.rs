@@ -5,6 +5,8 @@
 //! only, by less than half a turn, is crossed once by a line that separates its ends, in a side found by halving. The result
 //! is the same as if every side had been looked at.
 
+use std::ops::Range;
+
 use kurbo::{Point, Rect, Vec2};
 
 /// Sides in a shortest chain, and chains in one that is longer.
@@ -39,6 +41,11 @@ pub struct Part {
 }
 
 impl Part {
+    /// The numbers of its sides, if it is one of the shortest chains.
+    pub fn few(self) -> Option<Range<usize>> {
+        (self.level == 0).then(|| self.index * FAN..(self.index + 1) * FAN)
+    }
+
     fn parts(self, below: usize) -> impl Iterator<Item = Part> {
         let (first, level) = (self.index * FAN, self.level - 1);
         (first..(first + FAN).min(below)).map(move |index| Part { level, index })
@@ -137,6 +144,12 @@ impl Chains {
         &self.levels[part.level][part.index]
     }
 
+    /// The ends of a straight line, and how far from it the sides of a chain may be.
+    pub fn axis(&self, part: Part) -> ((Point, Point), f64) {
+        let chain = self.chain(part);
+        (chain.axis, chain.band)
+    }
+
     fn below(&self, part: Part) -> impl Iterator<Item = Part> {
         part.parts(self.levels[part.level - 1].len())
     }
@@ -156,18 +169,18 @@ impl Chains {
     }
 
     /// Calls back with the sides of `part` in chains whose box meets `area`, by the numbers of their first vertices.
-    pub fn each_near(&self, part: Part, area: Rect, each: &mut impl FnMut(std::ops::Range<usize>)) {
+    pub fn each_near(&self, part: Part, area: Rect, each: &mut impl FnMut(Range<usize>)) {
         if !meets(&self.chain(part).bounds, &area) {
             return;
         }
         match part.level {
-            0 => each(part.index * FAN..(part.index + 1) * FAN),
+            0 => part.few().into_iter().for_each(each),
             _ => self.below(part).for_each(|part| self.each_near(part, area, each)),
         }
     }
 
     /// Calls back with the sides of `part` that the line may cross, by the numbers of their first vertices.
-    pub fn each_met(&self, part: Part, line: &Line, vertices: &[Point], each: &mut impl FnMut(std::ops::Range<usize>)) {
+    pub fn each_met(&self, part: Part, line: &Line, vertices: &[Point], each: &mut impl FnMut(Range<usize>)) {
         let chain = self.chain(part);
         if chain.is_beside(line) {
             return;

@@ -11,6 +11,7 @@ use rayon::prelude::*;
 
 use super::chains::{Chains, Line, Part};
 use super::number;
+use super::pieces::{Piece, Sides};
 
 /// Curves are flattened to within this many pixels: so fine that a path which grazes a curve still meets it where it
 /// should. That many sides are looked at only where it matters ([`Chains`]): four of them lie within 0.001 px of their
@@ -124,6 +125,22 @@ impl Polygon {
         found
     }
 
+    /// As [`Polygon::parts_near`], but sides of the shortest chains are told one by one.
+    pub fn pieces_near(&self, area: Rect) -> Vec<Piece> {
+        let n = self.vertices.len();
+        let side = |i: usize| Piece::side(i, (self.vertices[i], self.vertices[(i + 1) % n]));
+        let mut found = Vec::new();
+        for part in self.parts_near(area) {
+            match part.few() {
+                Some(sides) => {
+                    found.extend((sides.start..sides.end.min(n)).map(side).filter(|side| side.touches(&area)))
+                }
+                None => found.push(Piece::chain(&self.chains, part)),
+            }
+        }
+        found
+    }
+
     /// Whether `q` is inside: even-odd; on a left or top edge in, on a right or bottom edge out.
     pub fn contains(&self, q: Point) -> bool {
         let mut xs = Vec::new();
@@ -174,6 +191,14 @@ impl Polygon {
         self.chains.each_met(part, line, &self.vertices, &mut |sides| {
             self.some(sides).filter_map(|(a, b)| side_crossing(a, b, line)).for_each(&mut *each);
         });
+    }
+
+    /// Calls back with each s where the line crosses a side of `piece`, in no order.
+    pub fn crossings_of(&self, piece: &Piece, line: &Line, each: &mut impl FnMut(f64)) {
+        match piece.of {
+            Sides::One(i) => self.some(i..i + 1).filter_map(|(a, b)| side_crossing(a, b, line)).for_each(each),
+            Sides::Chain(part) => self.crossings_in(part, line, each),
+        }
     }
 
     /// The sides whose first vertices have these numbers.

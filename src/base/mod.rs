@@ -22,6 +22,7 @@ pub mod numbered;
 pub mod oklab;
 pub mod packing;
 pub mod picture;
+pub mod pieces;
 pub mod pixels;
 pub mod pointer;
 pub mod problem;

@@ -4,12 +4,13 @@
 use kurbo::{Point, Rect, Vec2};
 
 use super::outline::Outline;
-use crate::base::chains::{Line, Part};
+use crate::base::chains::Line;
 use crate::base::geometry::Polygon;
+use crate::base::pieces::Piece;
 
 /// Crossings closer to each other than this, as a share of the path, are the same place: regions that share a side have
 /// no gap between them.
-const SAME: f64 = 1e-9;
+pub const SAME: f64 = 1e-9;
 
 /// The fold regions of a zone.
 pub struct Regions {
@@ -40,7 +41,8 @@ pub struct Walk {
 /// Sides that a run of paths may cross, and the region they belong to.
 pub struct Near {
     region: usize,
-    part: Part,
+    /// The sides.
+    pub piece: Piece,
 }
 
 impl Regions {
@@ -58,7 +60,7 @@ impl Regions {
     pub fn sides_within(&self, bounds: Rect) -> Vec<Near> {
         let bounds = bounds.inflate(1e-6, 1e-6);
         let of_region = |(region, polygon): (usize, &Polygon)| {
-            polygon.parts_near(bounds).into_iter().map(move |part| Near { region, part })
+            polygon.pieces_near(bounds).into_iter().map(move |piece| Near { region, piece })
         };
         self.polygons.iter().enumerate().flat_map(of_region).collect()
     }
@@ -70,11 +72,11 @@ impl Regions {
 
     /// Where the path from `q` along `jump` meets the union, for s in `low..=high`. `sides` must include all that the
     /// path can cross; `member` says which regions contain `q`.
-    pub fn follow<'a>(
+    pub fn follow<'a, 'b>(
         &self,
         (q, jump): (Point, Vec2),
         (low, high): (f64, f64),
-        sides: &[Near],
+        sides: impl IntoIterator<Item = &'b Near>,
         member: &[bool],
         walk: &'a mut Walk,
     ) -> &'a Crossings {
@@ -84,10 +86,10 @@ impl Regions {
         found.behind.clear();
         events.clear();
         let line = Line::new(q, jump);
-        for &Near { region, part } in sides.iter().filter(|_| jump != Vec2::ZERO) {
-            self.polygons[region].crossings_in(part, &line, &mut |s| {
+        for Near { region, piece } in sides.into_iter().filter(|_| jump != Vec2::ZERO) {
+            self.polygons[*region].crossings_of(piece, &line, &mut |s| {
                 if s >= low - SAME && s <= high + SAME {
-                    events.push((s, region));
+                    events.push((s, *region));
                 }
             });
         }

@@ -8,7 +8,8 @@ use super::fold::{Fold, Rule};
 use super::inside::spans;
 use super::interpolation::area::Area;
 use super::ragged::{Ragged, TILE};
-use super::regions::{Crossings, Regions, Walk};
+use super::regions::{Crossings, Near, Regions, SAME, Walk};
+use crate::base::pieces::Bundle;
 use crate::base::pixels::Grid;
 use crate::base::simd::{LANES, Lanes, vectorised};
 
@@ -53,6 +54,16 @@ pub struct Folding {
     place: Vec2,
 }
 
+/// What rows of tiles are followed with, one after the other.
+#[derive(Default)]
+struct Scratch {
+    /// For each side of the tile which pixels' paths may cross it.
+    may_cross: Vec<u16>,
+    /// Which regions contain the pixel.
+    member: Vec<bool>,
+    walk: Walk,
+}
+
 /// Pixels of a zone, row by row: which belong to it, and their jump vectors.
 #[derive(Clone, Copy)]
 pub struct Paths<'a> {
@@ -75,8 +86,9 @@ impl Folding {
         let paths = Paths { area: Area { from: [x, y], to: [x + 1, y + 1] }, inside: &[true], jumps: &[jump] };
         let q = self.q([x, y]);
         let sides = self.regions.sides_within(self.reach(&paths, &paths.area));
-        let jump = Vec2::new(jump[0].into(), jump[1].into());
-        self.regions.follow((q, jump), self.range, &sides, &self.regions.members(q), &mut Walk::default()).clone()
+        self.regions
+            .follow((q, vector(jump)), self.range, &sides, &self.regions.members(q), &mut Walk::default())
+            .clone()
     }
 
     /// Where the paths of all pixels meet the regions; `None` once `stopped`.
@@ -104,29 +116,61 @@ impl Folding {
     fn band(&self, paths: &Paths, in_region: &mut [bool]) -> (Ragged, Ragged) {
         let (mut ahead, mut behind) = (Ragged::default(), Ragged::default());
         self.regions.polygons().iter().for_each(|polygon| spans(polygon, &paths.area, self.place, in_region));
-        let meets = |part: &Area| !self.regions.sides_within(self.reach(paths, part)).is_empty();
-        let tiles: Vec<Area> = tiles(&paths.area).filter(meets).collect();
-        let (mut walk, mut member) = (Walk::default(), Vec::new());
+        let tiles: Vec<(Area, Vec<Near>)> = tiles(&paths.area)
+            .map(|tile| (tile, self.regions.sides_within(self.reach(paths, &tile))))
+            .filter(|(_, sides)| !sides.is_empty())
+            .collect();
+        let mut scratch = Scratch::default();
         for y in (paths.area.from[1]..paths.area.to[1]).filter(|_| !tiles.is_empty()) {
             let row = |part: &Area| Area { from: [part.from[0], y], to: [part.to[0], y + 1] };
             let members = self.members(&row(&paths.area));
-            for tile in tiles.iter().map(row) {
-                let sides = self.regions.sides_within(self.reach(paths, &tile));
-                for x in (tile.from[0]..tile.to[0]).filter(|_| !sides.is_empty()) {
-                    let (column, i) = ((x - paths.area.from[0]) as usize, paths.index([x, y]));
-                    if !paths.inside[i] {
-                        continue;
-                    }
-                    member.clear();
-                    member.extend(members.iter().map(|of_region| of_region[column]));
-                    let jump = Vec2::new(paths.jumps[i][0].into(), paths.jumps[i][1].into());
-                    let found = self.regions.follow((self.q([x, y]), jump), self.range, &sides, &member, &mut walk);
+            for (tile, sides) in &tiles {
+                self.row(paths, &row(tile), sides, &members, &mut scratch, &mut |i, found| {
                     ahead.push(i, &found.ahead);
                     behind.push(i, &found.behind);
-                }
+                });
             }
         }
         (ahead.ended(in_region.len()), behind.ended(in_region.len()))
+    }
+
+    /// Tells the crossings of the pixels in a row of a tile, which has these `sides`; `members` are those of the whole row.
+    fn row(
+        &self,
+        paths: &Paths,
+        row: &Area,
+        sides: &[Near],
+        members: &[Vec<bool>],
+        scratch: &mut Scratch,
+        tell: &mut impl FnMut(usize, &Crossings),
+    ) {
+        let Scratch { may_cross, member, walk } = scratch;
+        let (first, count) = (paths.index(row.from), row.count() as usize);
+        let jumps = &paths.jumps[first..first + count];
+        may_cross.clear();
+        vectorised(
+            #[inline(always)]
+            || {
+                let bundle = Bundle::new(self.q(row.from), jumps, (self.range.0 - SAME, self.range.1 + SAME));
+                for side in sides {
+                    may_cross.push(bundle.may_cross(&side.piece));
+                }
+            },
+        );
+        let mut left = may_cross.iter().fold(0, |all, bits| all | bits);
+        while left != 0 {
+            let k = left.trailing_zeros() as usize;
+            left &= left - 1;
+            if !paths.inside[first + k] {
+                continue;
+            }
+            let x = row.from[0] + k as u32;
+            member.clear();
+            member.extend(members.iter().map(|of_region| of_region[(x - paths.area.from[0]) as usize]));
+            let met = sides.iter().zip(&*may_cross).filter(|(_, bits)| *bits >> k & 1 == 1).map(|(side, _)| side);
+            let path = (self.q([x, row.from[1]]), vector(jumps[k]));
+            tell(first + k, self.regions.follow(path, self.range, met, member, walk));
+        }
     }
 
     /// For each region which pixels of a row are in it.
@@ -156,6 +200,10 @@ impl Folding {
         let (first, last) = (self.q(part.from), self.q(part.to.map(|end| end - 1)));
         Rect::new(first.x + left, first.y + up, last.x + right, last.y + down)
     }
+}
+
+fn vector([x, y]: [f32; 2]) -> Vec2 {
+    Vec2::new(x.into(), y.into())
 }
 
 impl Paths<'_> {
