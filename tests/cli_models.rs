@@ -389,3 +389,21 @@ fn the_first_view_keeps_the_look_of_a_mesh() {
     let (_, told) = plica(at, &["views", "guide", "sport", "b.plica.json"], false);
     assert!(told.contains("there is no view \"sport\" (did you mean \"spot\"?)"), "{told}");
 }
+
+/// Finer ones would only be lost, and be warned of.
+#[test]
+fn pictures_that_keep_the_look_are_no_finer_than_the_map() {
+    let folder = folder();
+    let at = folder.path();
+    plica(at, &["new", "flat.obj", "-o", "b.plica.json"], true);
+    let add =
+        ["views", "add", "spot", "b.plica.json", "--image", "cat.png", "--position", "0,7,-9", "--target", "0,7,0"];
+    plica(at, &add, true);
+    let lines = plica(at, &["views", "b.plica.json", "--json"], true).0;
+    let rows = lines.lines().map(|line| serde_json::from_str::<Value>(line).unwrap());
+    let of_base = |row: &Value| row["view"].as_str().is_some_and(|name| name.starts_with("base-"));
+    let depths: Vec<(f64, f64)> =
+        rows.filter(of_base).map(|row| (row["depth"].as_f64().unwrap(), row["beyond"].as_f64().unwrap())).collect();
+    assert!(depths.iter().any(|(depth, _)| *depth > 4.0), "as fine as the finest layer: {depths:?}");
+    assert!(depths.iter().all(|(_, beyond)| *beyond <= 0.25), "{depths:?}");
+}

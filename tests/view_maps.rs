@@ -2,10 +2,11 @@
 //! what must not change a frame. Photographs beside the repository are looked at where they are there.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails, in its helpers too")]
 
+#[path = "view_maps/photographs.rs"]
+mod photographs;
 #[path = "view_maps/player.rs"]
 mod player;
 
-use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -15,12 +16,12 @@ use plica::base::maths::{TAU, cos, sin, tan};
 use plica::base::mesh::{Mesh, Vertex};
 use plica::base::picture::Picture;
 use plica::base::pixels::{Frame, Linear, Rgba, decode, encode};
-use plica::base::progress::Watch;
 use plica::export::textures::{self, Forms};
 use plica::files::outputs::Guard;
 use plica::layers::parts::marks::{Mark, Shape, View};
 use plica::layers::parts::materials::Materials;
 use plica::layers::parts::readout::Value as Told;
+use plica::layers::space::camera::Camera;
 use plica::render::bands::Bands;
 use plica::render::overlay;
 use plica::render::passes::Asked;
@@ -225,38 +226,20 @@ fn blend_points_and_strokes_draw_from_it() {
 }
 
 #[test]
-fn photographs_come_back_from_their_own_cameras() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
-    let Ok(text) = std::fs::read_to_string(folder.join("multiview/spot_glossy/cameras.json")) else {
-        let _ = writeln!(std::io::stderr(), "not run: {} is not there", folder.display());
-        return;
-    };
-    let cameras: Value = serde_json::from_str(&text).unwrap();
-    let row = |view: &Value, k: usize| {
-        let turn = view["R"][k].as_array().unwrap().clone();
-        json!([turn[0], turn[1], turn[2], view["t"][k]])
-    };
-    let views = cameras["views"].as_array().unwrap().iter().take(2).enumerate().map(|(i, view)| {
-        json!({ "name": i.to_string(), "image": i.to_string(), "camera": { "focal": [view["fx"], view["fy"]],
-            "center": [view["cx"], view["cy"]], "matrix": [row(view, 0), row(view, 1), row(view, 2)] } })
-    });
-    let views: Vec<Value> = views.collect();
-    let image = |i: usize| {
-        let file = cameras["views"][i]["file"].as_str().unwrap();
-        (i.to_string(), json!({ "path": format!("multiview/spot_glossy/{file}") }))
-    };
-    let images: Value = (0..2).map(image).collect::<serde_json::Map<_, _>>().into();
-    let scene: Scene = serde_json::from_value(json!({ "plica": 1, "camera": {}, "images": images,
-        "meshes": { "spot": { "path": "meshes/spot.obj" } },
-        "layers": [{ "kind": "mesh", "name": "spot", "mesh": "spot", "surface": { "kind": "view-map", "views": views } }] }))
-    .unwrap();
-    let path = folder.join("scene.plica.json");
-    let loaded = plica::files::materials::load(&path, &scene, &Default::default(), &mut Default::default());
-    let (materials, _) = loaded.unwrap();
-    let synth = render::synth(&scene, &materials, None).unwrap();
-    let told = synth.layers[0].lying(Some(&Watch::NONE)).unwrap();
-    let found: Vec<f64> = told.iter().filter_map(|view| view.get("psnr")?.as_f64()).collect();
-    assert!(found.len() == 2 && found.iter().all(|near| *near >= 36.0), "{found:?}");
+fn what_is_bent_keeps_its_effects_at_the_same_angle() {
+    // All of it is beyond the end of the bend, so it is turned as one: a camera that is turned too sees the same.
+    let bent = json!({ "pose": { "bend": { "degrees": 35, "axis": "y", "from": -60, "to": -50 } } });
+    let (plain, bent) = (synth(&scene(10.0, &json!({}))), synth(&scene(10.0, &bent)));
+    let camera = bent.stage.camera.clone().unwrap();
+    let turn = glam::DMat3::from_rotation_z(f64::to_radians(35.0));
+    let turned = |at: [f64; 3]| (turn * DVec3::from(at)).to_array();
+    let (position, up) = (turned(camera.position), turned(camera.up));
+    let seen = cpu::frame(&bent.seen_from(Camera { position, up, ..camera }), 0.0);
+    let expected = cpu::frame(&plain, 0.0);
+    let far = |(a, b): (&[u8; 4], &[u8; 4])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > 2);
+    let off = expected.cells().iter().zip(seen.cells()).filter(|(a, b)| far((a, b))).count();
+    let dark = seen.cells().iter().filter(|cell| cell[3] > 0 && cell[0] < 120).count();
+    assert!(off < 8 && dark > 20, "{off} pixels differ, {dark} are of the pattern");
 }
 
 /// A scene with another surface.

@@ -1,5 +1,7 @@
 //! What a view tells the cells: its own pixels, and what follows from them for cells of other sizes and beside them.
 
+use rayon::prelude::*;
+
 use super::cells::{Cells, Layer, NONE};
 use super::id::{Pixel, Seen};
 use crate::base::pixels::Rgba;
@@ -88,53 +90,87 @@ impl Sum {
     }
 }
 
-/// What a view that sees this, with these pixels, tells the cells of each layer.
-pub fn told(cells: &Cells, seen: &Seen, pixels: &[Rgba], reach: Reach) -> Vec<Told> {
-    let mut sums = own(cells, seen, pixels);
+/// Who does the work for a view.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Work {
+    /// One thread, as others are busy with other views.
+    Alone,
+    /// All threads.
+    Shared,
+}
+
+impl Work {
+    /// The fewest cells that are worth a thread.
+    fn least(self) -> usize {
+        match self {
+            Work::Alone => usize::MAX,
+            Work::Shared => 1 << 13,
+        }
+    }
+}
+
+/// What a view that sees this, with these pixels, tells the cells of each layer. The bytes do not depend on who does the work.
+pub fn told(cells: &Cells, (seen, pixels): (&Seen, &[Rgba]), reach: Reach, work: Work) -> Vec<Told> {
+    let least = work.least();
+    let mut sums = own(cells, seen, pixels, work);
     for layer in (0..cells.layers.len().saturating_sub(1)).rev() {
         let [coarser, finer] = [layer, layer + 1].map(|layer| &cells.layers[layer]);
         let (own, children) = sums.split_at_mut(layer + 1);
-        from_finer((coarser, &mut own[layer]), (finer, &children[0]));
+        from_finer((coarser, &mut own[layer]), (finer, &children[0]), least);
     }
     for (layer, sums) in cells.layers.iter().zip(&mut sums) {
-        from_beside(layer, sums);
+        from_beside(layer, sums, least);
     }
     for layer in 1..cells.layers.len() {
         let (above, own) = sums.split_at_mut(layer);
-        from_coarser((&cells.layers[layer], &mut own[0]), (&cells.layers[layer - 1], &above[layer - 1]), layer);
+        let coarser = (&cells.layers[layer - 1], &above[layer - 1][..]);
+        from_coarser((&cells.layers[layer], &mut own[0]), coarser, layer, least);
     }
-    let layers = sums.iter().enumerate();
+    let layers = sums.par_iter().enumerate().with_min_len(least);
     layers.map(|(layer, sums)| finished(sums, |depth| within(reach, layer as f64, depth))).collect()
 }
 
-/// The means of a view's own pixels.
-fn own(cells: &Cells, seen: &Seen, pixels: &[Rgba]) -> Vec<Vec<Sum>> {
-    let mut sums: Vec<Vec<Sum>> = cells.layers.iter().map(|layer| vec![Sum::default(); layer.len()]).collect();
+/// The means of a view's own pixels. Each pixel counts on two layers that follow one another: of those with even numbers on one.
+fn own(cells: &Cells, seen: &Seen, pixels: &[Rgba], work: Work) -> Vec<Vec<Sum>> {
+    let [even, odd] = [0, 1].map(|first| move || own_on(cells, seen, pixels, first));
+    let (even, odd) = match work {
+        Work::Alone => (even(), odd()),
+        Work::Shared => rayon::join(even, odd),
+    };
+    let mut sums: Vec<Vec<Sum>> = cells.layers.iter().map(|_| Vec::new()).collect();
+    sums.iter_mut().step_by(2).zip(even).for_each(|(sums, own)| *sums = own);
+    sums.iter_mut().skip(1).step_by(2).zip(odd).for_each(|(sums, own)| *sums = own);
+    sums
+}
+
+/// Those of every second layer from `first`, 0 or 1, on.
+fn own_on(cells: &Cells, seen: &Seen, pixels: &[Rgba], first: usize) -> Vec<Vec<Sum>> {
+    let own = cells.layers.iter().skip(first).step_by(2);
+    let mut sums: Vec<Vec<Sum>> = own.map(|layer| vec![Sum::default(); layer.len()]).collect();
     let Some(finest) = cells.layers.len().checked_sub(1) else { return sums };
     for pixel in seen.bands.iter().flatten().filter(|pixel| pixel.facing > 0.0) {
         let depth = pixel.depth.clamp(0.0, finest as f64);
         let layer = depth.floor() as usize;
         let near = depth - layer as f64;
-        let [r, g, b, counts] = pixels[pixel.at as usize].map(f64::from);
-        for (layer, share) in [(layer, 1.0 - near), (layer + 1, near)] {
-            if share <= 0.0 {
-                continue;
-            }
-            let down = Pixel::FINEST - layer;
-            let cell = cells.layers[layer].find(pixel.chart, (pixel.x >> down) as i32, (pixel.y >> down) as i32);
-            if cell == NONE {
-                continue;
-            }
-            let weight = share * pixel.share * f64::from(1_u32 << (2 * layer));
-            let sum = &mut sums[layer][cell as usize];
-            for (sum, light) in sum.light.iter_mut().zip([r, g, b]) {
-                *sum += weight * light;
-            }
-            sum.mask += weight * counts;
-            sum.facing += weight * pixel.facing;
-            sum.depth += weight * depth;
-            sum.weight += weight;
+        let (layer, share) = if layer % 2 == first { (layer, 1.0 - near) } else { (layer + 1, near) };
+        if share <= 0.0 {
+            continue;
         }
+        let down = Pixel::FINEST - layer;
+        let cell = cells.layers[layer].find(pixel.chart, (pixel.x >> down) as i32, (pixel.y >> down) as i32);
+        if cell == NONE {
+            continue;
+        }
+        let [r, g, b, counts] = pixels[pixel.at as usize].map(f64::from);
+        let weight = share * pixel.share * f64::from(1_u32 << (2 * layer));
+        let sum = &mut sums[layer / 2][cell as usize];
+        for (sum, light) in sum.light.iter_mut().zip([r, g, b]) {
+            *sum += weight * light;
+        }
+        sum.mask += weight * counts;
+        sum.facing += weight * pixel.facing;
+        sum.depth += weight * depth;
+        sum.weight += weight;
     }
     for sum in sums.iter_mut().flatten().filter(|sum| sum.weight > 0.0) {
         *sum = sum.mean(Origin::Own);
@@ -143,8 +179,8 @@ fn own(cells: &Cells, seen: &Seen, pixels: &[Rgba]) -> Vec<Vec<Sum>> {
 }
 
 /// Completes a layer by what the next one has.
-fn from_finer((layer, sums): (&Layer, &mut [Sum]), (finer, below): (&Layer, &[Sum])) {
-    for (cell, sum) in layer.cells.iter().zip(sums) {
+fn from_finer((layer, sums): (&Layer, &mut [Sum]), (finer, below): (&Layer, &[Sum]), least: usize) {
+    layer.cells.par_iter().zip(sums).with_min_len(least).for_each(|(cell, sum)| {
         let (mut found, mut count, mut masks) = (Sum::default(), 0.0, 0.0);
         for child in Layer::children(cell, finer).into_iter().filter(|child| *child != NONE) {
             let child = &below[child as usize];
@@ -160,7 +196,7 @@ fn from_finer((layer, sums): (&Layer, &mut [Sum]), (finer, below): (&Layer, &[Su
             found.depth += child.depth * child.mask;
         }
         if masks <= 0.0 {
-            continue;
+            return;
         }
         let light = found.light.map(|light| light / count);
         let finer = Sum {
@@ -181,29 +217,30 @@ fn from_finer((layer, sums): (&Layer, &mut [Sum]), (finer, below): (&Layer, &[Su
                 Sum { origin: Some(origin), ..both }
             }
         };
-    }
+    });
 }
 
 /// Closes the gaps that a raster leaves.
-fn from_beside(layer: &Layer, sums: &mut [Sum]) {
-    let mut found = Vec::new();
-    for (number, cell) in layer.cells.iter().enumerate().filter(|(number, _)| sums[*number].origin.is_none()) {
+fn from_beside(layer: &Layer, sums: &mut [Sum], least: usize) {
+    let empty =
+        layer.cells.par_iter().enumerate().with_min_len(least).filter(|(number, _)| sums[*number].origin.is_none());
+    let found = empty.filter_map(|(number, cell)| {
         let mut sum = Sum::default();
         for other in layer.around(cell).into_iter().filter(|other| *other != NONE) {
             if sums[other as usize].origin.is_some() {
                 sum.add(&sums[other as usize], 1.0);
             }
         }
-        if sum.weight > 0.0 {
-            found.push((number, sum.mean(Origin::Beside)));
-        }
-    }
+        (sum.weight > 0.0).then(|| (number, sum.mean(Origin::Beside)))
+    });
+    let found: Vec<(usize, Sum)> = found.collect();
     found.into_iter().for_each(|(number, sum)| sums[number] = sum);
 }
 
 /// Fills what the layer above can tell, where it was measured there.
-fn from_coarser((layer, sums): (&Layer, &mut [Sum]), (coarser, above): (&Layer, &[Sum]), number: usize) {
-    for (cell, sum) in layer.cells.iter().zip(sums).filter(|(_, sum)| sum.origin.is_none()) {
+fn from_coarser((layer, sums): (&Layer, &mut [Sum]), (coarser, above): (&Layer, &[Sum]), number: usize, least: usize) {
+    let all = layer.cells.par_iter().zip(sums).with_min_len(least);
+    all.filter(|(_, sum)| sum.origin.is_none()).for_each(|(cell, sum)| {
         let mut found = Sum::default();
         for (other, weight) in coarser.above(cell).into_iter().filter(|(other, _)| *other != NONE) {
             let other = &above[other as usize];
@@ -215,7 +252,7 @@ fn from_coarser((layer, sums): (&Layer, &mut [Sum]), (coarser, above): (&Layer, 
         if found.weight > 0.0 {
             *sum = found.mean(Origin::Coarser);
         }
-    }
+    });
 }
 
 /// How much of an entry of this depth is left on a layer.

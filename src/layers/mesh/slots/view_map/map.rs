@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::atlas::{Atlas, By};
 use super::cells::{Cells, Layer};
 use super::coat::{Coat, coats};
-use super::entries::{Told, told};
+use super::entries::{Told, Work, told};
 use super::id::Seen;
 use super::lists::Lists;
 use super::view::View;
@@ -115,6 +115,7 @@ impl Map {
                 seen,
             });
         }
+        let work = work(&wanted, before);
         let filled = wanted.views.par_iter().zip(&mut seen).enumerate().map(|(number, (view, seen))| {
             if (watch.stopped)() {
                 return None;
@@ -125,7 +126,7 @@ impl Map {
                 let kept = before.and_then(|map| map.seen[map.looks_as(view)?].clone());
                 let seen = kept.or_else(|| seen.take().map(Arc::new));
                 let seen = seen.unwrap_or_else(|| Arc::new(look(&wanted, &atlas, view)));
-                let told = told(&cells, &seen, &view.paint.pixels(), view.reach);
+                let told = told(&cells, (&seen, &view.paint.pixels()), view.reach, work);
                 OfView { report: report(&seen, levels), told: Some(told), seen: Some(seen).filter(|_| is_edited) }
             });
             (watch.done)(number);
@@ -222,6 +223,15 @@ fn coated(wanted: &Wanted, cells: &Cells, lists: &[Lists], before: Option<(&Map,
     }
     let before = before.map(|(map, _)| (&map.lists[..], &map.coats[..]));
     Arc::new(coats(cells, lists, &wanted.views, wanted.missing, before))
+}
+
+/// Who works on a view: all threads where a single one is not as it was in the map before.
+fn work(wanted: &Wanted, before: Option<&Map>) -> Work {
+    let known = |view: &&View| before.is_some_and(|map| map.wanted.views.iter().any(|own| own.tells_the_same(view)));
+    match wanted.views.iter().filter(|view| !known(view)).count() {
+        0 | 1 => Work::Shared,
+        _ => Work::Alone,
+    }
 }
 
 fn look(wanted: &Wanted, atlas: &Atlas, view: &View) -> Seen {

@@ -126,6 +126,17 @@ fn twice_the_resolution_or_half_the_distance_is_one_layer_more() {
 }
 
 #[test]
+fn the_depth_changes_smoothly_as_a_camera_comes_nearer() {
+    let mesh = ball();
+    let atlas = Atlas::new(&mesh, By::Uv);
+    let distances = std::iter::successors(Some(10.0), |distance| Some(0.98 * distance)).take(40);
+    let seen = distances.map(|z| Seen::new(&mesh, &atlas, &camera([0.3 * z, 0.2 * z, z], 30.0, 160), 16, 0.0).depth);
+    let depths: Vec<f64> = seen.map(Option::unwrap).collect();
+    let most = depths.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
+    assert!(most <= 0.04 && depths[39] > depths[0] + 1.0, "{most} {depths:?}");
+}
+
+#[test]
 fn the_surface_is_half_a_square_of_the_atlas_in_charts() {
     let two = Atlas::new(&squares(&[0.0, -1.0]), By::Uv);
     assert_eq!(two.chart, [0, 0, 1, 1]);
