@@ -3,10 +3,10 @@
 use kurbo::{Point, Vec2};
 
 use super::command::{Call, Command, Done, command};
-use super::sharing::{LIST, known};
 use super::transforming::numbers;
 use crate::base::pointer::Pointer;
-use crate::base::problem::quoted;
+use crate::base::problem::{nearest, quoted};
+use crate::layers::parts::materials::List;
 use crate::layers::shapes::handles::through;
 use crate::layers::shapes::node;
 use crate::layers::shapes::shape;
@@ -27,12 +27,15 @@ pub const COMMANDS: &[Command] = &[
     .change(),
     command(
         "along",
-        "NAME [to NAME|by X,Y] ...",
+        "NAME|y=Y|x=X [to NAME|by X,Y] ...",
         "Hold the picture still along shapes, in the zone here; or let the samplers go from one to another, or by a vector",
         along,
     )
     .change(),
 ];
+
+/// The key of the scene's list of shapes.
+pub const LIST: &str = "shapes";
 
 fn lay(state: &mut State, call: &Call) -> Done {
     let words = words(call.text)?;
@@ -43,11 +46,9 @@ fn lay(state: &mut State, call: &Call) -> Done {
     if points.len() < 2 {
         return Err(usage());
     }
-    let nodes = through(&points).iter().map(node::written).collect();
-    let pointer = Pointer(&Pointer("").join(LIST)).join(name);
     let document = state.document();
     let is_new = !document.scene().shapes.contains_key(name);
-    state.edit(Edit::set(document, &pointer, shape::written(nodes)), false)?;
+    state.edit(lies(document, name, &points), false)?;
     state.say(plain(&match is_new {
         true => format!("the shape {} is there: :use makes an outline of it, :along what moves", quoted(name)),
         false => format!("the shape {} is laid anew, and all that is made of it", quoted(name)),
@@ -57,12 +58,54 @@ fn lay(state: &mut State, call: &Call) -> Done {
 
 /// A place of the picture, or the ends of a line across it, as they are typed.
 fn points(state: &State, word: &str) -> Result<Vec<Point>, String> {
-    let ends = match word.split_once('=') {
-        Some(("y", y)) => [["0", y], ["w", y]],
-        Some(("x", x)) => [[x, "0"], [x, "h"]],
-        _ => return Ok(vec![place(state, word)?]),
-    };
+    let Some(ends) = ends(word) else { return Ok(vec![place(state, word)?]) };
     ends.into_iter().map(|at| point(state, at)).collect()
+}
+
+/// The ends of a line across the picture, as it is typed.
+fn ends(word: &str) -> Option<[[&str; 2]; 2]> {
+    match word.split_once('=')? {
+        ("y", y) => Some([["0", y], ["w", y]]),
+        ("x", x) => Some([[x, "0"], [x, "h"]]),
+        _ => None,
+    }
+}
+
+/// Words of a line with what they name.
+pub struct Laid {
+    /// The words, with the names of shapes for lines across the picture.
+    pub words: Vec<String>,
+    /// The edit that lays those of these lines that are no shapes yet.
+    pub edit: Edit,
+    /// The scene with them.
+    pub document: Document,
+}
+
+/// Lays the lines across the picture that are among these words: `y=120` is the shape `y120`.
+pub fn laid(state: &State, words: Vec<String>) -> Result<Laid, String> {
+    let mut laid = Laid { words, edit: Edit::all([]), document: state.document().clone() };
+    for word in laid.words.iter_mut().filter(|word| ends(word).is_some()) {
+        let points = points(state, word)?;
+        let (letter, at) = if word.starts_with('y') { ('y', points[0].y) } else { ('x', points[0].x) };
+        let line = std::mem::replace(word, format!("{letter}{}", short(at)));
+        let edit = lies(&laid.document, word, &points);
+        let with = laid.document.apply(&edit).map_err(|problems| first(&problems))?;
+        let shapes = &laid.document.scene().shapes;
+        if shapes.get(word) == with.scene().shapes.get(word) {
+            continue;
+        }
+        if shapes.contains_key(word) {
+            return Err(format!("the shape {} lies elsewhere: name this line, :shape NAME {line}", quoted(word)));
+        }
+        (laid.edit, laid.document) = (Edit::all([laid.edit, edit]), with);
+    }
+    Ok(laid)
+}
+
+/// The edit that lays a shape smoothly through points.
+fn lies(document: &Document, name: &str, points: &[Point]) -> Edit {
+    let nodes = through(points).iter().map(node::written).collect();
+    Edit::set(document, &Pointer(&Pointer("").join(LIST)).join(name), shape::written(nodes))
 }
 
 /// A place of the picture, as it is typed.
@@ -79,6 +122,17 @@ fn point(state: &State, at: [&str; 2]) -> Result<Point, String> {
     }
 }
 
+/// Refuses a name that no shape has.
+pub fn known(document: &Document, name: &str) -> Done {
+    let all = document.scene().names(List::Shapes);
+    if all.contains(name) {
+        return Ok(());
+    }
+    let near =
+        nearest(name, all.iter().copied()).unwrap_or(":shape lays one, :share makes one of what is there".into());
+    Err(format!("there is no shape {} ({near})", quoted(name)))
+}
+
 /// Where the samplers along a shape go, as it is typed.
 enum Way<'a> {
     Nowhere,
@@ -87,19 +141,19 @@ enum Way<'a> {
 }
 
 /// Each shape in the words of a line, and where the samplers go from there.
-fn ways<'a>(state: &State, words: &'a [String]) -> Result<Vec<(&'a str, Way<'a>)>, String> {
+fn ways<'a>(state: &State, document: &Document, words: &'a [String]) -> Result<Vec<(&'a str, Way<'a>)>, String> {
     let usage =
         || "along takes names of shapes, and where to from each: :along brow low to lid, :along sea by 6,3".to_owned();
     let (mut ways, mut words) = (Vec::new(), words.iter().map(String::as_str).peekable());
     while let Some(name) = words.next() {
-        known(state, name)?;
+        known(document, name)?;
         let way = match words.next_if(|word| ["to", "by"].contains(word)) {
             None => Way::Nowhere,
             Some("to") => Way::To(words.next().ok_or_else(usage)?),
             Some(_) => Way::By(place(state, words.next().ok_or_else(usage)?)?.to_vec2()),
         };
         if let Way::To(other) = way {
-            known(state, other)?;
+            known(document, other)?;
         }
         ways.push((name, way));
     }
@@ -107,10 +161,10 @@ fn ways<'a>(state: &State, words: &'a [String]) -> Result<Vec<(&'a str, Way<'a>)
 }
 
 fn along(state: &mut State, call: &Call) -> Done {
-    let words = words(call.text)?;
-    let ways = ways(state, &words)?;
-    let (here, mut document) = (state.here(), state.document().clone());
-    let (mut edits, mut told, mut zone) = (Vec::new(), Vec::new(), String::new());
+    let Laid { words, edit: laid, mut document } = laid(state, words(call.text)?)?;
+    let ways = ways(state, &document, &words)?;
+    let here = state.here();
+    let (mut edits, mut told, mut zone) = (vec![laid], Vec::new(), String::new());
     for (name, way) in &ways {
         let (pointer, edit) =
             moved(&document, &here, name, way).ok_or("along is for what moves in a zone: go to one")?;

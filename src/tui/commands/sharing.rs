@@ -6,9 +6,10 @@ use serde_json::{Map, Value, json};
 
 use super::command::{Call, Command, Done, command};
 use super::items::go_to;
+use super::shaping::{LIST, Laid, known, laid};
 use crate::base::geometry::point;
 use crate::base::pointer::Pointer;
-use crate::base::problem::{nearest, quoted};
+use crate::base::problem::quoted;
 use crate::layers::parts::materials::List;
 use crate::layers::shapes::shape;
 use crate::scene::schema::{Body, Place, Shape};
@@ -27,7 +28,7 @@ pub const COMMANDS: &[Command] = &[
     .change(),
     command(
         "use",
-        "NAME [reverse] [NAME ...]",
+        "NAME|y=Y|x=X [reverse] ...",
         "Make the outline or the curve here of shapes; an outline of shapes gets more parts",
         take,
     )
@@ -70,9 +71,6 @@ impl Kinds {
         Some(Kinds { tag, shared, own: lists(|item| Some(item.id()) == node().map(Shape::id))? })
     }
 }
-
-/// The key of the scene's list of shapes.
-pub const LIST: &str = "shapes";
 
 /// The list of nodes of a shape.
 const NODES: &str = "nodes";
@@ -230,22 +228,11 @@ fn leave_rows(state: &mut State, line: &Line) {
 /// A shape that is used, and whether from its end.
 type Used<'a> = (&'a str, bool);
 
-/// Refuses a name that no shape has.
-pub fn known(state: &State, name: &str) -> Done {
-    let all = state.document().scene().names(List::Shapes);
-    if all.contains(name) {
-        return Ok(());
-    }
-    let near =
-        nearest(name, all.iter().copied()).unwrap_or(":shape lays one, :share makes one of what is there".into());
-    Err(format!("there is no shape {} ({near})", quoted(name)))
-}
-
 /// The shapes in the words of a line, each of which may have `reverse` behind it. One that ends where the one before ends is turned
 /// by itself.
-fn used<'a>(state: &State, words: &'a [String]) -> Result<Vec<Used<'a>>, String> {
+fn used<'a>(document: &Document, words: &'a [String]) -> Result<Vec<Used<'a>>, String> {
     const BACK: &str = "reverse";
-    let shapes = &state.document().scene().shapes;
+    let shapes = &document.scene().shapes;
     let ends = |name: &str, reverse: bool| {
         let nodes = &shapes.get(name)?.nodes;
         let ends = (point(nodes.first()?.at), point(nodes.last()?.at));
@@ -256,7 +243,7 @@ fn used<'a>(state: &State, words: &'a [String]) -> Result<Vec<Used<'a>>, String>
         if word == BACK && i > 0 && words[i - 1] != BACK {
             continue;
         }
-        known(state, word)?;
+        known(document, word)?;
         let is_turned = || {
             let (name, reverse) = *used.last()?;
             let ((_, end), (a, b)) = (ends(name, reverse)?, ends(word, false)?);
@@ -274,27 +261,26 @@ fn used<'a>(state: &State, words: &'a [String]) -> Result<Vec<Used<'a>>, String>
 }
 
 fn take(state: &mut State, call: &Call) -> Done {
-    let words = words(call.text)?;
-    let used = used(state, &words)?;
+    let Laid { words, edit: laid, document } = laid(state, words(call.text)?)?;
+    let used = used(&document, &words)?;
     if let Some((list, kinds)) = regions(state) {
-        return add_region(state, &list, &kinds, &used);
+        return add_region(state, (laid, &document), (&list, &kinds), &used);
     }
-    let document = state.document();
     let line = line(state)?;
     let parts: Vec<Value> = used.iter().map(|&(name, reverse)| shape::part(name, reverse)).collect();
-    let more = is_shared(document, &line);
+    let more = is_shared(&document, &line);
     let edit = match (&line, used.as_slice()) {
-        (Line::Open(_), [(name, false)]) => made_of(document, &line, &[name]),
+        (Line::Open(_), [(name, false)]) => made_of(&document, &line, &[name]),
         (Line::Open(_), _) => return Err("a curve follows one shape, from its beginning to its end".into()),
         (Line::Closed(pointer, kinds), _) if more => {
             let list = Pointer(pointer).join(kinds.shared.1);
             let count = document.json().pointer(&list).and_then(Value::as_array).map_or(0, Vec::len);
-            let insert = |(i, part): (usize, Value)| Edit::insert(document, &list, count + i, part);
+            let insert = |(i, part): (usize, Value)| Edit::insert(&document, &list, count + i, part);
             Edit::all(parts.into_iter().enumerate().map(insert))
         }
-        (Line::Closed(pointer, kinds), _) => Edit::set(document, pointer, of_parts(kinds, parts)),
+        (Line::Closed(pointer, kinds), _) => Edit::set(&document, pointer, of_parts(kinds, parts)),
     };
-    let done = state.edit(edit, false);
+    let done = state.edit(Edit::all([laid, edit]), false);
     done.map_err(|why| match used.len() {
         1 if !more => format!("{why}; an outline of several: :use {} OTHER", one_word(used[0].0)),
         _ => why,
@@ -331,8 +317,12 @@ fn regions(state: &State) -> Option<(String, Kinds)> {
 }
 
 /// Adds a closed line to a list, which may be that of something that is not there yet.
-fn add_region(state: &mut State, list: &str, kinds: &Kinds, used: &[Used]) -> Done {
-    let document = state.document();
+fn add_region(
+    state: &mut State,
+    (laid, document): (Edit, &Document),
+    (list, kinds): (&str, &Kinds),
+    used: &[Used],
+) -> Done {
     let region = of_parts(kinds, used.iter().map(|&(name, reverse)| shape::part(name, reverse)).collect());
     let holder = Pointer(list).parent().unwrap_or_default();
     let edit = match document.json().pointer(list).and_then(Value::as_array).map(Vec::len) {
@@ -343,7 +333,7 @@ fn add_region(state: &mut State, list: &str, kinds: &Kinds, used: &[Used]) -> Do
             Edit::all([begin, Edit::set(&begun, list, Value::Array(vec![region]))])
         }
     };
-    state.edit(edit, false)?;
+    state.edit(Edit::all([laid, edit]), false)?;
     go_to(state, holder);
     let place = address::address(state.document(), list);
     state.say(plain(&format!("{place} has one that is made of {}", told(used))));

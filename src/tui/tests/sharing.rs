@@ -93,6 +93,11 @@ pub fn shapes_are_laid_and_what_moves_follows_them() {
         (&arcs(": \"along low lid to low\" Enter"), &zone("/motion/1/jumps/10/jump"), json!([0, 30])),
         (&arcs(": \"along low lid\" Enter u"), &zone("/motion"), json!([])),
         (&format!("{ARCS} : \"shape sea y=20*2\" Enter"), "/shapes/sea/nodes/1/at", json!([64, 40])),
+        // A line across the picture is laid where it is used, once.
+        (&format!("{EYE} : \"use y=20*2 y=10\" Enter"), "/shapes/y40/nodes/1/at", json!([64, 40])),
+        (&format!("{EYE} : \"use y=40 x=3\" Enter"), &zone("/outline/parts/1/shape"), json!("x3")),
+        (&format!("{EYE} : \"use y=40\" Enter : \"use x=3\" Enter u u"), "/shapes", json!(null)),
+        (&arcs(": \"along y=40 y=40 to x=3\" Enter"), &zone("/motion/0/nodes"), json!("y40")),
         (&format!("{ARCS} : \"shape mast x=w/2\" Enter"), "/shapes/mast/nodes/1/at", json!([32, 64])),
         (&along, &zone("/motion/0/jumps/10"), json!({ "along": 0.5, "jump": [0, -30] })),
         // Measured anew, it stays one.
@@ -115,6 +120,10 @@ pub fn shapes_are_laid_and_what_moves_follows_them() {
             json!({ "shape": "lid", "reverse": true }),
         ),
     ]);
+}
+
+#[test]
+fn what_cannot_be_laid_or_moved_along_says_so() {
     for (line, part) in [
         ("shape a 1,2", "shape takes a name and two points or more"),
         ("shape a 1,2 3;4", "\"3;4\" is no place of the picture: write it as X,Y"),
@@ -123,11 +132,14 @@ pub fn shapes_are_laid_and_what_moves_follows_them() {
         ("along low up lid", "there is no shape \"up\""),
         ("along low by 3", "\"3\" is no place of the picture: write it as X,Y"),
         ("shape a y=q", "\"q\": "),
+        ("use y=q", "\"q\": "),
+        ("along x=7", "the shape \"x7\" lies elsewhere: name this line, :shape NAME x=7"),
         ("along low to lidd", "there is no shape \"lidd\" (did you mean \"lid\"?)"),
         ("along low", "along is for what moves in a zone: go to one"),
     ] {
         let mut state = state();
         press(&mut state, ARCS);
+        press(&mut state, ": \"shape x7 1,2 3,4\" Enter");
         if line == "along low" {
             obey(&mut state, "go timeline", None).unwrap();
         }
