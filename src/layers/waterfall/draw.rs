@@ -131,7 +131,7 @@ mod tests {
             turn: if angle == 0.0 { DVec2::X } else { DVec2::from_angle(angle.to_radians()) },
             mirrored: mirrored < 0.5,
             opacity: 0.1 + 0.5 * wide,
-            tint: Vec4::new(0.5, 1.0, 3.0, 1.0),
+            tint: if i.is_multiple_of(5) { Vec4::ONE } else { Vec4::new(0.5, 1.0, 3.0, 1.0) },
             level: if i.is_multiple_of(2) { 0 } else { 1 },
             key: (0, u),
             mix,

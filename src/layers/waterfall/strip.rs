@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::Vec4;
 
 use super::between::{Mixed, Sums, at_least};
-use super::blend::{Blend, Block, Planes, block};
+use super::blend::{Blend, PAIR, Sheet, pair};
 use super::cells::Covering;
 use super::color::{before, neighbors};
 use super::splat::Splat;
@@ -18,6 +18,9 @@ use crate::base::simd::{LANES, Lanes};
 /// Columns over which the nearest surface is known.
 const BLOCK: usize = 64;
 
+/// Rows of texels that are made at a time, so that the caches closest to the processor hold all that this takes.
+const BAND: usize = 8;
+
 /// Texels that a row is read from: as many as a side has at most, and the one after the last.
 const REACH: usize = LARGEST as usize + 1;
 
@@ -28,28 +31,28 @@ const WINDOW: usize = (LARGEST * LARGEST) as usize + 1;
 #[derive(Default)]
 pub struct Scratch {
     /// What is shown.
-    canvas: Planes,
+    canvas: Sheet,
     /// The nearest surface of each block of columns, in meters.
     nearest: Vec<f64>,
     /// What these are made of.
     sums: Sums,
     /// Rows of texels of a sprite, and after them whatever was there.
     texels: Vec<Rgba>,
-    /// What each column of a sprite that is not turned reads.
+    /// What each pair of columns of a sprite that is not turned reads.
     reads: Vec<Read>,
     /// How far columns are from the middle of a turned sprite.
     aside: Vec<f32>,
     /// What each column of a turned sprite reads in a row.
     corners: Vec<Corners>,
     /// What columns read in each row of texels of a sprite that is not turned.
-    colors: Vec<Block>,
+    colors: Vec<Lanes>,
 }
 
-/// Where in a row of texels the one left of a place is, and the weights of that one and the next.
-#[derive(Clone, Copy)]
+/// Where in a row of texels those left of two places are, and the weights of these and of the next ones.
+#[derive(Clone, Copy, Default)]
 struct Read {
-    left: u8,
-    weights: [f32; 2],
+    left: [u8; PAIR],
+    weights: [Lanes; 2],
 }
 
 /// Some rows of a frame.
@@ -134,26 +137,29 @@ impl<'a> Strip<'a> {
         made: Range<usize>,
     ) {
         let columns = self.find_reads(splat, columns, mixed.side);
+        if columns.is_empty() {
+            return;
+        }
         let blend = self.blend(splat, &columns);
         let Scratch { canvas, sums, texels, reads, colors, .. } = &mut *self.scratch;
-        let blocks = columns.len().div_ceil(LANES);
-        reads.resize(blocks * LANES, Read { left: 0, weights: [0.0; 2] });
-        let colors = at_least(colors, blocks * made.len());
-        let count = made.len() * mixed.side;
-        let texels = at_least(texels, count + REACH);
-        mixed.rows(made.clone(), sums, &mut texels[..count]);
-        for i in 0..made.len() {
-            // As many as can be asked for: no read needs to be checked.
-            let Some(texels) = texels[i * mixed.side..].first_chunk::<REACH>() else { continue };
-            for (reads, out) in reads.as_chunks::<LANES>().0.iter().zip(&mut colors[i * blocks..]) {
-                *out = block(
-                    #[inline(always)]
-                    |x| {
-                        let Read { left, weights } = reads[x];
-                        let left = usize::from(left);
-                        Vec4::from(texels[left]) * weights[0] + Vec4::from(texels[left + 1]) * weights[1]
-                    },
-                );
+        let pairs = reads.len();
+        let colors = at_least(colors, pairs * made.len());
+        let texels = at_least(texels, BAND * mixed.side + REACH);
+        for (band, colors) in colors.chunks_mut(pairs * BAND).enumerate() {
+            let first = made.start + band * BAND;
+            let band = first..made.end.min(first + BAND);
+            mixed.rows(band.clone(), sums, &mut texels[..band.len() * mixed.side]);
+            for (i, colors) in colors.chunks_exact_mut(pairs).enumerate() {
+                // As many as can be asked for: no read needs to be checked.
+                let Some(texels) = texels[i * mixed.side..].first_chunk::<REACH>() else { continue };
+                for (Read { left, weights }, out) in reads.iter().zip(colors) {
+                    let [first, second] = left.map(usize::from);
+                    let [before, after] = [0, 1].map(
+                        #[inline(always)]
+                        |i| pair(texels[first + i].into(), texels[second + i].into()),
+                    );
+                    *out = after.times(weights[1], before * weights[0]);
+                }
             }
         }
         let width = self.places[0].len();
@@ -163,19 +169,13 @@ impl<'a> Strip<'a> {
                 continue;
             }
             let ([above, below], share) = neighbors((along + 0.5) * mixed.side as f64, mixed.side);
-            let (above, below) = (
-                &colors[(above - made.start) * blocks..][..blocks],
-                &colors[(below - made.start) * blocks..][..blocks],
-            );
+            let [above, below] = [above, below].map(|row| &colors[(row - made.start) * pairs..][..pairs]);
             let share = Lanes::all(share);
             let depth = &self.depth[(y - self.first) * width..][columns.clone()];
-            let out = canvas.row(y - self.first, columns.start, blocks);
+            let out = canvas.row(y - self.first, columns.start, pairs);
             blend.lay(
                 #[inline(always)]
-                |i| {
-                    let channel = |c: usize| above[i][c] + (below[i][c] - above[i][c]) * share;
-                    [channel(0), channel(1), channel(2), channel(3)]
-                },
+                |i| (below[i] - above[i]).times(share, above[i]),
                 depth,
                 out,
             );
@@ -185,20 +185,30 @@ impl<'a> Strip<'a> {
     /// Finds the columns that a sprite which is not turned covers, and what each reads.
     #[inline(always)]
     fn find_reads(&mut self, splat: &Splat, columns: Range<usize>, side: usize) -> Range<usize> {
-        self.scratch.reads.clear();
-        let mut from = columns.start;
+        let reads = &mut self.scratch.reads;
+        reads.clear();
+        let (mut from, mut count) = (columns.start, 0);
         for x in columns {
             let across = (self.places[0][x] - splat.middle.x) / splat.size_px.x;
             let across = if splat.mirrored { -across } else { across };
             if across.abs() < 0.5 {
                 let at = ((across + 0.5) * side as f64 - 0.5).clamp(0.0, (side - 1) as f64);
                 let share = (at - at.floor()) as f32;
-                self.scratch.reads.push(Read { left: at as u8, weights: [1.0 - share, share] });
-            } else if self.scratch.reads.is_empty() {
+                if count % PAIR == 0 {
+                    reads.push(Read::default());
+                }
+                if let Some(read) = reads.last_mut() {
+                    read.left[count % PAIR] = at as u8;
+                    for (weights, weight) in read.weights.iter_mut().zip([1.0 - share, share]) {
+                        weights.0[count % PAIR * 4..][..4].fill(weight);
+                    }
+                }
+                count += 1;
+            } else if count == 0 {
                 from = x + 1;
             }
         }
-        from..from + self.scratch.reads.len()
+        from..from + count
     }
 
     /// Draws a turned sprite.
@@ -224,19 +234,20 @@ impl<'a> Strip<'a> {
         for y in rows {
             let columns = spans.at(self.places[1][y]);
             let map = Map::new(splat, self.places[1][y], side, made.start);
-            let blocks = columns.len().div_ceil(LANES);
+            let (blocks, pairs) = (columns.len().div_ceil(LANES), columns.len().div_ceil(PAIR));
             let aside = aside[columns.start - drawn.columns.start..][..blocks * LANES].as_chunks::<LANES>().0;
             let corners = at_least(corners, blocks);
             for (corners, aside) in corners.iter_mut().zip(aside) {
                 *corners = map.at(Lanes(*aside));
             }
             let depth = &self.depth[(y - self.first) * width..][columns.clone()];
-            let out = canvas.row(y - self.first, columns.start, blocks);
+            let out = canvas.row(y - self.first, columns.start, pairs);
             blend.lay(
                 #[inline(always)]
                 |i| {
-                    let Corners { first, weights: [w, x, y, z] } = &corners[i];
-                    block(
+                    let Corners { first, weights: [w, x, y, z] } = &corners[i / (LANES / PAIR)];
+                    let k = PAIR * (i % (LANES / PAIR));
+                    let colors = [k, k + 1].map(
                         #[inline(always)]
                         |k| {
                             let (left, right) = (usize::from(first[k]), usize::from(first[k]) + 1);
@@ -244,7 +255,8 @@ impl<'a> Strip<'a> {
                             let above = Vec4::from(above[left]) * w + Vec4::from(above[right]) * x;
                             above + Vec4::from(below[left]) * y + Vec4::from(below[right]) * z
                         },
-                    )
+                    );
+                    pair(colors[0], colors[1])
                 },
                 depth,
                 out,
