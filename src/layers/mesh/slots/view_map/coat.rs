@@ -42,14 +42,14 @@ pub fn parts(lists: &Lists, cell: u32, layer: usize, views: &[View], parts: &mut
     mix(parts)
 }
 
-/// What views told before, and the base coat of that.
-pub type Before<'a> = (&'a [Lists], &'a [Coat]);
+/// What views told before, the base coat of that, and which views tell the same as before.
+pub type Before<'a> = (&'a [Lists], &'a [Coat], &'a [bool]);
 
 /// The base coat of all layers; what was known `before` of cells that are told the same is kept.
 pub fn coats(cells: &Cells, lists: &[Lists], views: &[View], missing: [f32; 3], before: Option<Before>) -> Vec<Coat> {
     let mut coats: Vec<Coat> = Vec::with_capacity(lists.len());
     for (number, (layer, lists)) in cells.layers.iter().zip(lists).enumerate() {
-        let before = before.map(|(lists, coats)| (&lists[number], &coats[number]));
+        let before = before.map(|(lists, coats, same)| (&lists[number], &coats[number], same));
         let mut coat = known(layer, lists, (number, before), views, missing);
         match coats.last() {
             None => fill_from_beside(layer, &mut coat),
@@ -63,15 +63,15 @@ pub fn coats(cells: &Cells, lists: &[Lists], views: &[View], missing: [f32; 3], 
 fn known(
     layer: &Layer,
     lists: &Lists,
-    (number, before): (usize, Option<(&Lists, &Coat)>),
+    (number, before): (usize, Option<(&Lists, &Coat, &[bool])>),
     views: &[View],
     missing: [f32; 3],
 ) -> Coat {
     let is_base = |view: u8| views[usize::from(view)].base;
     let cells = (0..layer.len() as u32).into_par_iter().map_init(Vec::new, |found: &mut Vec<Part>, cell| {
-        if let Some((told, coat)) = before
+        if let Some((told, coat, same)) = before
             && coat.states[cell as usize] == State::Known
-            && lists.tell_the_same(told, cell, is_base)
+            && lists.tell_the_same(told, cell, same, is_base)
         {
             return (coat.colors[cell as usize], State::Known);
         }

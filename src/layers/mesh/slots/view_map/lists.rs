@@ -26,11 +26,23 @@ impl Lists {
             entries: Vec::with_capacity(most),
         };
         lists.starts.push(0);
+        let is_same = |view: u8| before.is_some_and(|(_, same)| same.get(usize::from(view)) == Some(&true));
         let mut next = vec![0; fresh.len()];
+        // What goes on as it is, cell after cell, is copied at once.
+        let mut whole = 0..0;
         for cell in 0..cells as u32 {
-            let old = before.iter().flat_map(|(before, same)| {
-                before.told_to(cell).filter(|(view, _)| same.get(usize::from(*view)).is_some_and(|same| *same))
-            });
+            let told_anew = fresh.iter().zip(&next).any(|((_, told), next)| told.cells.get(*next) == Some(&cell));
+            let old = before.map_or(0..0, |(before, _)| before.of(cell));
+            if let Some((before, _)) = before {
+                if !told_anew && before.views[old.clone()].iter().all(|view| is_same(*view)) {
+                    whole.end = old.end;
+                    lists.starts.push((lists.views.len() + whole.len()) as u32);
+                    continue;
+                }
+                lists.copy(before, whole);
+            }
+            whole = old.end..old.end;
+            let old = before.iter().flat_map(|(before, _)| before.told_to(cell).filter(|(view, _)| is_same(*view)));
             let mut old = old.peekable();
             for ((view, told), next) in fresh.iter().zip(&mut next) {
                 if told.cells.get(*next) == Some(&cell) {
@@ -44,6 +56,7 @@ impl Lists {
             old.for_each(|(view, entry)| lists.push(view, entry));
             lists.starts.push(lists.views.len() as u32);
         }
+        before.into_iter().for_each(|(before, _)| lists.copy(before, whole.clone()));
         lists.views.shrink_to_fit();
         lists.entries.shrink_to_fit();
         lists
@@ -54,8 +67,18 @@ impl Lists {
         self.entries.push(*entry);
     }
 
-    /// Whether a cell is told the same in both, by views that are wanted.
-    pub fn tell_the_same(&self, other: &Lists, cell: u32, wanted: impl Fn(u8) -> bool) -> bool {
+    fn copy(&mut self, other: &Lists, at: Range<usize>) {
+        self.views.extend_from_slice(&other.views[at.clone()]);
+        self.entries.extend_from_slice(&other.entries[at]);
+    }
+
+    /// Whether a cell is told the same in both, by views that are wanted; those that are `same` tell every cell the same.
+    pub fn tell_the_same(&self, other: &Lists, cell: u32, same: &[bool], wanted: impl Fn(u8) -> bool) -> bool {
+        let is_known = |view: &u8| same.get(usize::from(*view)) == Some(&true) || !wanted(*view);
+        let are_known = |lists: &Lists| lists.views[lists.of(cell)].iter().all(is_known);
+        if are_known(self) && are_known(other) {
+            return true;
+        }
         self.told_to(cell).filter(|(view, _)| wanted(*view)).eq(other.told_to(cell).filter(|(view, _)| wanted(*view)))
     }
 

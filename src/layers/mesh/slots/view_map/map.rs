@@ -221,7 +221,7 @@ fn coated(wanted: &Wanted, cells: &Cells, lists: &[Lists], before: Option<(&Map,
     {
         return map.coats.clone();
     }
-    let before = before.map(|(map, _)| (&map.lists[..], &map.coats[..]));
+    let before = before.map(|(map, same)| (&map.lists[..], &map.coats[..], same));
     Arc::new(coats(cells, lists, &wanted.views, wanted.missing, before))
 }
 
