@@ -19,6 +19,16 @@ pub fn fused(a: f32, b: f32, c: f32) -> f32 {
     a.mul_add(b, c)
 }
 
+/// [`fused`] in double precision.
+#[expect(
+    clippy::disallowed_methods,
+    reason = "the only use of it: the bits are the same everywhere, but the call is slow outside of `vectorised`"
+)]
+#[inline(always)]
+pub fn fused_doubles(a: f64, b: f64, c: f64) -> f64 {
+    a.mul_add(b, c)
+}
+
 /// Eight numbers. In code without branches they become one vector where the processor has such wide ones, of which none in
 /// memory crosses a line of the cache.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

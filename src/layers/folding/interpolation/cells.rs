@@ -9,9 +9,9 @@ use rayon::prelude::*;
 
 use super::area::{Area, Stretch};
 use super::chebyshev::{Chebyshev, NODES, Nodes, Shares, along, row_of};
-use super::kernel::{Apart, Fate, Kernel, Pair, Source};
+use super::kernel::{Apart, Fate, GROUP, Kernel, Pair, Source};
 use super::method::{AT_ANCHOR_PX, Cell, Method, Wanted};
-use crate::base::simd::vectorised;
+use crate::base::simd::{fused, fused_doubles, vectorised};
 
 /// Pixels along a side of the cells whose pixels are evaluated at once: the larger, and the smaller where many anchors
 /// are near.
@@ -35,6 +35,8 @@ struct Leaf<const S: usize>([Shares<S>; 2]);
 pub struct Cells<K, const C: usize> {
     kernel: K,
     sources: Vec<Source<C>>,
+    /// Whether the kernel and the anchors allow for weights in single precision.
+    is_single: bool,
     place: [f64; 2],
     /// Side of the one cell that contains the picture.
     whole: u32,
@@ -50,7 +52,9 @@ impl<K: Kernel<C>, const C: usize> Cells<K, C> {
         let whole = size[0].max(size[1]).max(BASE).next_power_of_two();
         let leaf = Leaf(place.map(|first| chebyshev.shares_of_pixels(first, f64::from(LEAF))));
         let small_leaf = Leaf(place.map(|first| chebyshev.shares_of_pixels(first, f64::from(SMALL_LEAF))));
-        Cells { kernel, sources, place, whole, chebyshev, leaf, small_leaf }
+        // Few anchors are told apart to the last bits that double precision has.
+        let is_single = kernel.is_single() && sources.len() >= FEW;
+        Cells { kernel, sources, is_single, place, whole, chebyshev, leaf, small_leaf }
     }
 
     /// The quarters of a cell whose part of `area` is `wanted`.
@@ -113,8 +117,9 @@ impl<K: Kernel<C>, const C: usize> Cells<K, C> {
         for above in above {
             nodes.push(self.chebyshev.quarter(above, right, lower));
         }
+        let squares = self.squares_across(far, &places[0]);
         for (row, y) in places[1].iter().enumerate() {
-            let sums = self.sum_far(far, &places[0], *y);
+            let sums = self.sum_far(far, &squares, &places[0], *y);
             for (nodes, sums) in nodes.iter_mut().zip(sums) {
                 nodes[row].iter_mut().zip(sums).for_each(|(node, sum)| *node += sum);
             }
@@ -122,10 +127,14 @@ impl<K: Kernel<C>, const C: usize> Cells<K, C> {
         nodes
     }
 
-    /// Sums over far anchors at nodes in a row.
+    /// Sums over far anchors at nodes in a row; `squares` are their [`Cells::squares_across`].
     #[inline(always)]
-    fn sum_far(&self, far: &[Source<C>], xs: &[f64; NODES], y: f64) -> [[f64; NODES]; C] {
+    fn sum_far(&self, far: &[Source<C>], squares: &[[f32; NODES]], xs: &[f64; NODES], y: f64) -> [[f64; NODES]; C] {
         let mut sums = [[0.0; NODES]; C];
+        if self.is_single() {
+            self.add_single(far, squares, y, &mut sums);
+            return sums;
+        }
         for source in far {
             let dy = y - source.at[1];
             let mut weights = [0.0; NODES];
@@ -138,6 +147,62 @@ impl<K: Kernel<C>, const C: usize> Cells<K, C> {
         sums
     }
 
+    /// Whether weights are made in single precision.
+    #[inline(always)]
+    fn is_single(&self) -> bool {
+        K::SINGLE && self.is_single
+    }
+
+    /// The squares of the ways across from each anchor to the columns `xs`; none unless weights are single.
+    #[inline(always)]
+    fn squares_across<const N: usize>(&self, sources: &[Source<C>], xs: &[f64; N]) -> Vec<[f32; N]> {
+        let mut all = Vec::new();
+        if self.is_single() {
+            all.resize(sources.len(), [0.0; N]);
+        }
+        for (squares, source) in all.iter_mut().zip(sources) {
+            for (square, x) in squares.iter_mut().zip(xs) {
+                let dx = x - source.at[0];
+                *square = (dx * dx) as f32;
+            }
+        }
+        all
+    }
+
+    /// Adds anchors in a row of places by weights in single precision. Squares of the ways across and down are rounded only
+    /// after they were made, so that a weight is as exact for an anchor that is near.
+    #[inline(always)]
+    fn add_single<const N: usize>(
+        &self,
+        sources: &[Source<C>],
+        squares: &[[f32; N]],
+        y: f64,
+        sums: &mut [[f64; N]; C],
+    ) {
+        for (sources, squares) in sources.chunks(GROUP).zip(squares.chunks(GROUP)) {
+            let mut group = [[0.0_f32; N]; C];
+            for (source, squares) in sources.iter().zip(squares) {
+                let dy = y - source.at[1];
+                let down = (dy * dy) as f32;
+                let mut weights = [0.0_f32; N];
+                for (weight, across) in weights.iter_mut().zip(squares) {
+                    *weight = self.kernel.weight_single(across + down);
+                }
+                for (sums, term) in group.iter_mut().zip(&source.terms) {
+                    let term = *term as f32;
+                    for (sum, weight) in sums.iter_mut().zip(&weights) {
+                        *sum = fused(*weight, term, *sum);
+                    }
+                }
+            }
+            for (sums, group) in sums.iter_mut().zip(&group) {
+                for (sum, of_group) in sums.iter_mut().zip(group) {
+                    *sum += f64::from(*of_group);
+                }
+            }
+        }
+    }
+
     /// Tells the pixels of `part` of a cell of size `S`.
     fn tell<const S: usize>(&self, cell: &Cell, leaf: &Leaf<S>, part: &Area, tell: &mut dyn FnMut(Stretch)) {
         let near: Vec<Source<C>> = cell.near.iter().map(|&index| self.sources[index as usize]).collect();
@@ -147,8 +212,10 @@ impl<K: Kernel<C>, const C: usize> Cells<K, C> {
         vectorised(
             #[inline(always)]
             || {
+                let xs = self.columns(cell.area.from[0]);
+                let squares = self.squares_across(&near, &xs);
                 for row in part.from[1]..part.to[1] {
-                    rows.push(self.row(cell, &near, leaf, at(row)));
+                    rows.push(self.row(cell, (&near, &squares), leaf, at(row), &xs));
                 }
             },
         );
@@ -160,31 +227,41 @@ impl<K: Kernel<C>, const C: usize> Cells<K, C> {
         }
     }
 
+    /// The evaluated places in the columns from `first` on.
+    #[inline(always)]
+    fn columns<const S: usize>(&self, first: u32) -> [f64; S] {
+        let mut xs = [0.0; S];
+        for (k, x) in xs.iter_mut().enumerate() {
+            *x = f64::from(first) + k as f64 + self.place[0];
+        }
+        xs
+    }
+
     /// The jump vectors in the row of a leaf that begins at `pixel`.
     #[inline(always)]
     fn row<const S: usize>(
         &self,
         cell: &Cell,
-        near: &[Source<C>],
+        (near, squares): (&[Source<C>], &[[f32; S]]),
         Leaf([across, down]): &Leaf<S>,
         pixel: [u32; 2],
+        xs: &[f64; S],
     ) -> [[f64; S]; 2] {
         let row = (pixel[1] - cell.area.from[1]) as usize;
-        let mut xs = [0.0; S];
-        for (k, x) in xs.iter_mut().enumerate() {
-            *x = f64::from(pixel[0]) + k as f64 + self.place[0];
-        }
         let y = f64::from(pixel[1]) + self.place[1];
         let mut sums = [[0.0; S]; C];
         for (sums, nodes) in sums.iter_mut().zip(&cell.nodes) {
             *sums = along(&row_of(nodes, down, row), across);
         }
-        self.add_near(near, pixel, &xs, y, &mut sums);
+        match self.is_single() {
+            true => self.add_single(near, squares, y, &mut sums),
+            false => self.add_near(near, pixel, xs, y, &mut sums),
+        }
         if cell.doubt > 0.0 && sums[0].iter().any(|sum| *sum < cell.doubt) {
             sums = [[0.0; S]; C];
-            self.add_near(&self.sources, pixel, &xs, y, &mut sums);
+            self.add_near(&self.sources, pixel, xs, y, &mut sums);
         }
-        self.kernel.jumps(&sums, &xs, y)
+        self.kernel.jumps(&sums, xs, y)
     }
 
     /// Adds near anchors in a row of pixels.
@@ -269,7 +346,7 @@ impl<K: Kernel<C>, const C: usize> Method for Cells<K, C> {
 fn add<const N: usize, const C: usize>(sums: &mut [[f64; N]; C], terms: &[f64; C], weights: &[f64; N]) {
     for (sums, term) in sums.iter_mut().zip(terms) {
         for (sum, weight) in sums.iter_mut().zip(weights) {
-            *sum += weight * term;
+            *sum = fused_doubles(*weight, *term, *sum);
         }
     }
 }

@@ -2,6 +2,7 @@
 //! places, handed down to the four quarters of the cell by two small matrices, and to its pixels by two more.
 
 use crate::base::maths;
+use crate::base::simd::{fused_doubles, vectorised};
 
 /// Nodes along each side of a cell.
 pub const NODES: usize = 8;
@@ -57,7 +58,10 @@ impl Chebyshev {
             let exact = |at_x: f64, at_y: f64| weight((at_x - x) * (at_x - x) + (at_y - y) * (at_y - y));
             let values = self.nodes.map(|at_y| self.nodes.map(|at_x| exact(at_x, at_y)));
             for (row, at_y) in places.into_iter().enumerate() {
-                let found = along(&row_of(&values, &shares, row), &shares);
+                let found = vectorised(
+                    #[inline(always)]
+                    || along(&row_of(&values, &shares, row), &shares),
+                );
                 for (found, at_x) in found.into_iter().zip(places) {
                     let exact = exact(at_x, at_y);
                     worst = worst.max(((found - exact) / unit(exact)).abs());
@@ -75,7 +79,7 @@ pub fn row_of<const N: usize>(values: &Nodes, shares: &Shares<N>, row: usize) ->
     for (values, shares) in values.iter().zip(shares) {
         let share = shares[row];
         for (sum, value) in sum.iter_mut().zip(values) {
-            *sum += share * value;
+            *sum = fused_doubles(share, *value, *sum);
         }
     }
     sum
@@ -87,7 +91,7 @@ pub fn along<const N: usize>(row: &[f64; NODES], shares: &Shares<N>) -> [f64; N]
     let mut sums = [0.0; N];
     for (value, shares) in row.iter().zip(shares) {
         for (sum, share) in sums.iter_mut().zip(shares) {
-            *sum += value * share;
+            *sum = fused_doubles(*value, *share, *sum);
         }
     }
     sums

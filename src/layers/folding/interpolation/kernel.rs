@@ -7,6 +7,9 @@ use crate::layers::folding::anchor::Anchor;
 /// How far a jump vector may be from that of the exact sums, in pixels.
 pub const TOLERANCE_PX: f64 = 1e-3;
 
+/// So many anchors are summed in single precision before their sums are added to those in double precision.
+pub const GROUP: usize = 4;
+
 /// Gaps between an anchor and a cell, in half sides of the cell, from which on its weight may be interpolated.
 pub const GAPS: [f64; 12] = [1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 6.0, 8.0, 10.0, 14.0];
 
@@ -68,6 +71,9 @@ pub trait Kernel<const C: usize>: Send + Sync {
     /// Whether a pixel at an anchor takes the anchor's vector, whatever follows from the sums.
     const PASSES_ANCHORS: bool = true;
 
+    /// Whether weights may be made in single precision.
+    const SINGLE: bool = false;
+
     /// The weight at a squared distance; that of far anchors is interpolated.
     fn weight(&self, d2: f64) -> f64;
 
@@ -75,6 +81,17 @@ pub trait Kernel<const C: usize>: Send + Sync {
     #[inline(always)]
     fn weight_near(&self, pair: Pair) -> f64 {
         self.weight(pair.d2)
+    }
+
+    /// Whether [`Kernel::weight_single`] will do for these jump vectors, if it does for any.
+    fn is_single(&self) -> bool {
+        Self::SINGLE
+    }
+
+    /// The weight in single precision, rounded a few times.
+    #[inline(always)]
+    fn weight_single(&self, d2: f32) -> f32 {
+        self.weight(f64::from(d2)) as f32
     }
 
     /// What becomes of an anchor in a cell.

@@ -220,8 +220,10 @@ impl Over<'_> {
 
     fn shepard(self, power: f64, spread: f64) -> Box<dyn Method> {
         let steep = || Steep::new(power, spread, self.anchors.len());
+        let lengths = self.anchors.iter().map(|anchor| anchor.jump.x.abs().max(anchor.jump.y.abs()));
+        let longest = lengths.fold(0.0, f64::max);
         if power == two() {
-            InverseSquare::new(spread).map_or_else(|| self.means(steep()), |kernel| self.means(kernel))
+            InverseSquare::new(spread, longest).map_or_else(|| self.means(steep()), |kernel| self.means(kernel))
         } else {
             Power::new(power, spread).map_or_else(|| self.means(steep()), |kernel| self.means(kernel))
         }
