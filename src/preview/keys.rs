@@ -89,7 +89,7 @@ const OWN: &[KeyRow] = &[
     row(WINDOW, "A", "play-part", "From here on is played, then up to here, then all again"),
     row(WINDOW, "T", TRY_NOW, "Tries at once to connect again"),
     row(WINDOW, "z", "view-menu", "The view menu"),
-    row(WINDOW, "?", "help", "These keys"),
+    row(WINDOW, "?", "help", "These keys, page by page"),
     row(WINDOW, "Esc", "close-panel", "Closes help and problems, leaves the full screen"),
     row(WINDOW, "q", "quit", "Closes the window"),
 ];

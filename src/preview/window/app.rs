@@ -199,7 +199,7 @@ impl App {
     pub(super) fn report(&mut self) {
         self.state.fps = self.state.fps.filter(|_| self.plays_visibly());
         let Some(opened) = &self.opened else { return };
-        let notice = Some(self.state.words.of_scene()).filter(|notice| !notice.is_empty());
+        let notice = self.state.words.for_editor(self.state.capture.is_some());
         let notice = notice.or(self.state.thin.words().map(str::to_owned)).unwrap_or_default();
         let fps = self.state.fps.unwrap_or(0.0).round();
         let adapter = opened.gpu.device().name();

@@ -27,7 +27,9 @@ pub fn draw(state: &State, letters: &Letters) -> Canvas {
     match state.panel {
         Panel::None => legend::draw(&mut canvas, state, letters, free),
         Panel::Menu => panel::draw(&mut canvas, state, letters, free, KEYS.iter().filter(|row| row.context == VIEW)),
-        Panel::Help => panel::draw(&mut canvas, state, letters, free, KEYS.iter()),
+        Panel::Help(page) => {
+            panel::draw(&mut canvas, state, letters, free, panel::page(state, &KEYS, page).0.into_iter());
+        }
     }
     bar::draw(&mut canvas, state, letters);
     canvas
@@ -119,11 +121,14 @@ mod tests {
     use kurbo::Size;
 
     #[test]
-    fn all_keys_fit_a_small_window_beside_legends_and_problems() {
+    fn keys_fit_a_small_window_beside_legends_and_problems() {
         let letters = Letters::default();
         for size in [Size::new(360.0, 240.0), Size::new(480.0, 320.0), Size::new(512.0, 802.0)] {
-            let mut state =
-                State { panel: Panel::Help, reach: Reach { longest_px: 40.0, ..Reach::default() }, ..State::default() };
+            let mut state = State {
+                panel: Panel::Help(0),
+                reach: Reach { longest_px: 40.0, ..Reach::default() },
+                ..State::default()
+            };
             for command in ["view-field", "view-wheel"] {
                 state.run(command);
             }

@@ -27,6 +27,7 @@ impl App {
                 Some(std::mem::replace(&mut self.state.transport, next))
             });
             let beside = (&self.letters, &self.proxy);
+            let said = (self.state.words.progress.clone(), self.state.words.told.clone());
             let painted = opened.paint(&mut self.state, self.shown.as_ref(), &mut self.marks, beside);
             live.into_iter().for_each(|live| self.state.transport = live);
             match painted {
@@ -36,6 +37,9 @@ impl App {
                 Ok(Presented::Hidden) => opened.hidden = true,
                 Ok(Presented::Lost) => self.reopen()?,
                 Err(error) => return Err(error),
+            }
+            if said != (self.state.words.progress.clone(), self.state.words.told.clone()) {
+                self.report();
             }
             self.clock.drawn += 1;
             let took = self.opened.as_mut().and_then(|opened| opened.took(began.elapsed()));

@@ -182,7 +182,7 @@ impl ApplicationHandler<Event> for App {
             Event::Captured(told) => {
                 app.state.capture = None;
                 (app.state.words.progress, app.state.words.told) = (None, Some(told));
-                app.redraw();
+                app.report();
                 Ok(())
             }
             Event::Interrupted => Err(Error::Interrupted),

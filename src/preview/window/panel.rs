@@ -1,12 +1,41 @@
-//! A list of keys in the upper left corner, in as many columns as leave its letters largest.
+//! A list of keys in the upper left corner, in as many columns as leave its letters largest. One that is too long to be read
+//! then has several pages.
 
-use kurbo::{Rect, Vec2};
+use kurbo::{Rect, Size, Vec2};
 
 use super::canvas::Canvas;
 use super::state::State;
 use super::style::{ACCENT, MARGIN_PX, PANEL, TEXT, TEXT_PX};
 use super::text::{LINE, Letters};
 use crate::base::keys::KeyRow;
+
+/// How much smaller letters are than others where there is little room, so that they can be read.
+const LEAST: f64 = 0.75;
+/// Logical pixels that a key and what it does take at most.
+const COLUMN_PX: f64 = 560.0;
+
+/// The last row of a page that is not the last.
+static MORE: KeyRow = KeyRow { context: "", key: "?", command: "help", help: "More keys" };
+
+/// How many rows can be read at once in an area of so many logical pixels.
+fn rows_a_page(area: Size) -> usize {
+    let rows = (area.height - 4.0 * MARGIN_PX) / (LINE * TEXT_PX * LEAST);
+    let columns = (area.width / (COLUMN_PX * LEAST)).floor().max(1.0);
+    (rows.floor().max(2.0) * columns) as usize
+}
+
+/// What is on a page of rows (the last, if there are less), and whether there are more behind it.
+pub fn page(state: &State, rows: &'static [KeyRow], number: usize) -> (Vec<&'static KeyRow>, bool) {
+    let most = rows_a_page(state.area() / state.scale);
+    if rows.len() <= most {
+        return (rows.iter().collect(), false);
+    }
+    let most = most - 1; // and that there are more
+    let number = number.min((rows.len() - 1) / most);
+    let own = rows.iter().skip(number * most).take(most);
+    let more = (number + 1) * most < rows.len();
+    (own.chain(more.then_some(&MORE)).collect(), more)
+}
 
 /// Draws rows of the key table into what is free of the area.
 pub fn draw<'a>(

@@ -3,10 +3,11 @@
 use kurbo::Vec2;
 
 use super::capture::Round;
+use super::panel;
 use super::state::{Panel, State};
 use super::style::BACKGROUNDS;
 use super::viewport::Fit;
-use crate::preview::keys::TRY_NOW;
+use crate::preview::keys::{KEYS, TRY_NOW};
 use crate::preview::views::{self, FIELD};
 use crate::render::passes;
 
@@ -74,7 +75,7 @@ impl State {
             "pan-up" => self.pan(pan(0.0, -1.0)),
             "pan-down" => self.pan(pan(0.0, 1.0)),
             "view-menu" => self.panel = Panel::Menu,
-            "help" => self.panel = if self.panel == Panel::Help { Panel::None } else { Panel::Help },
+            "help" => self.panel = self.next_help(),
             "close-panel" => return self.close(),
             "view-full-screen" => return Outcome::FullScreen,
             "select-point" | "copy-point" | "next-sight" | TRY_NOW => {} // answered by the editor, and by whoever follows the scene
@@ -105,6 +106,15 @@ impl State {
             self.transport.whole_frames = self.shows("view-whole-frames");
         }
         is_switch
+    }
+
+    /// The next page of the keys, if there is one.
+    fn next_help(&self) -> Panel {
+        match self.panel {
+            Panel::Help(page) if panel::page(self, &KEYS, page).1 => Panel::Help(page + 1),
+            Panel::Help(_) => Panel::None,
+            _ => Panel::Help(0),
+        }
     }
 
     /// Closes what lies over the picture; if there is nothing, leaves the full screen.
@@ -152,10 +162,9 @@ impl State {
 
 #[cfg(test)]
 mod tests {
-    use kurbo::Point;
+    use kurbo::{Point, Size};
 
     use super::*;
-    use crate::preview::keys::KEYS;
 
     #[test]
     fn every_command_of_the_key_table_is_known() {
@@ -243,11 +252,33 @@ mod tests {
 
     #[test]
     fn esc_closes_one_thing_after_the_other() {
-        let mut state = State { panel: Panel::Help, marked: Some(Point::ZERO), ..State::for_tests() };
+        let mut state = State { panel: Panel::Help(0), marked: Some(Point::ZERO), ..State::for_tests() };
         state.words.follow_scene(vec![crate::base::problem::Problem::error("", "wrong")]);
         assert_eq!((state.run("close-panel"), state.panel, state.marked), (Outcome::Redraw, Panel::None, None));
         assert_eq!((state.run("close-panel"), state.words.listed().len()), (Outcome::Redraw, 0));
         assert_eq!(state.run("close-panel"), Outcome::Window);
+    }
+
+    #[test]
+    fn all_keys_are_on_some_page_that_can_be_read() {
+        for (size, pages) in [(Size::new(480.0, 360.0), 4), (Size::new(1000.0, 600.0), 1)] {
+            let mut state = State::for_tests();
+            state.resize(size, 1.0);
+            let mut seen = Vec::new();
+            for number in 0..pages {
+                state.run("help");
+                assert_eq!(state.panel, Panel::Help(number));
+                seen.extend(panel::page(&state, &KEYS, number).0.iter().map(|row| row.command));
+            }
+            state.run("help");
+            assert_eq!(state.panel, Panel::None, "{size}");
+            assert!(KEYS.iter().all(|row| seen.contains(&row.command)), "{size}");
+            assert_eq!(
+                panel::page(&state, &KEYS, 99).0,
+                panel::page(&state, &KEYS, pages - 1).0,
+                "made larger meanwhile"
+            );
+        }
     }
 
     #[test]

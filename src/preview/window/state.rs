@@ -120,8 +120,8 @@ pub enum Panel {
     None,
     /// The view menu, until the next key.
     Menu,
-    /// All keys.
-    Help,
+    /// A page of all keys.
+    Help(usize),
 }
 
 impl Default for State {

@@ -81,10 +81,12 @@ impl Words {
         first.or_else(|| self.reduced.clone())
     }
 
-    /// What the scene's own problems are in one line, for the editor: it knows by itself how the link is.
-    pub fn of_scene(&self) -> String {
+    /// What the editor is told in one line: what is wrong with the scene (it knows by itself how the link is), or how far a
+    /// capture is, or what the last key had to say.
+    pub fn for_editor(&self, captures: bool) -> Option<String> {
         let words = Words { link: Vec::new(), ..self.clone() };
-        words.in_one_line().unwrap_or_default()
+        let progress = self.progress.clone().filter(|_| captures);
+        words.in_one_line().or(progress).or_else(|| self.told.clone())
     }
 }
 
@@ -104,7 +106,7 @@ mod tests {
         assert!(words.listed().is_empty(), "the same ones");
         words.follow_link(vec![problem("/c")]);
         assert_eq!(words.listed().len(), 3);
-        assert_eq!(words.of_scene(), "a: wrong (and 1 more)");
+        assert_eq!(words.for_editor(false).as_deref(), Some("a: wrong (and 1 more)"));
         words.follow_link(Vec::new());
         words.follow_scene(Vec::new());
         words.reduced = Some("reduced".into());
