@@ -12,7 +12,7 @@ pub fn vectorised<R>(work: impl FnOnce() -> R) -> R {
 /// a b + c, rounded once: one instruction within [`vectorised`], a call elsewhere, with the same bits.
 #[expect(
     clippy::disallowed_methods,
-    reason = "the only use of it: the bits are the same everywhere, but the call is slow outside of `vectorised`"
+    reason = "the one door: the bits are the same everywhere, but the call is slow outside of `vectorised`"
 )]
 #[inline(always)]
 pub fn fused(a: f32, b: f32, c: f32) -> f32 {
@@ -22,7 +22,7 @@ pub fn fused(a: f32, b: f32, c: f32) -> f32 {
 /// [`fused`] in double precision.
 #[expect(
     clippy::disallowed_methods,
-    reason = "the only use of it: the bits are the same everywhere, but the call is slow outside of `vectorised`"
+    reason = "the one door: the bits are the same everywhere, but the call is slow outside of `vectorised`"
 )]
 #[inline(always)]
 pub fn fused_doubles(a: f64, b: f64, c: f64) -> f64 {
