@@ -125,8 +125,7 @@ impl Opened {
         let tell = progress::Progress::new(move |percent| done.store(percent.into(), Ordering::Relaxed));
         let materials = Materials { progress: Some(Arc::new(tell)), ..self.materials.clone() };
         let synth = || render::synth(self.document.scene(), &materials, None);
-        let made =
-            watched::told(messages, ("percent of the synthesis", 100), || percent.load(Ordering::Relaxed), synth);
+        let made = watched::told(messages, ("synthesis", 100), || percent.load(Ordering::Relaxed), synth);
         made.map_err(|problem| self.failed(problem))
     }
 

@@ -106,6 +106,8 @@ fn sphere(state: &mut State, call: &Call) -> Done {
         }
     };
     state.edit(edit, false)?;
+    let of = if what == Put::Blend { "blend" } else { "extreme" };
+    state.say(format!("{of} point {index} stands here now"));
     go_to(state, &format!("{path}/{index}"));
     Ok(())
 }

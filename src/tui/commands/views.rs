@@ -206,12 +206,12 @@ fn view(state: &State, layer: usize, name: Option<&str>) -> Result<(usize, Strin
 }
 
 fn go(state: &mut State, name: Option<&str>) -> Done {
-    if state.outside.window.is_empty() {
-        return Err("there is no window to look through: :view opens one".into());
-    }
     let layer = layer(state)?;
     let (index, name) = view(state, layer, name)?;
     paint_on(state, layer, index);
+    if state.outside.window.is_empty() {
+        return Err(format!("{} is painted on, but there is no window to look through: :view opens one", plain(&name)));
+    }
     let technique = state.document().scene().layers[layer].technique();
     let from = technique.lying().and_then(|lying| lying.get(index)?.from).ok_or("its camera sees nothing")?;
     let place = technique.model_to_world(state.play.time).ok_or("the layer has no model")?;

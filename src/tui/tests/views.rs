@@ -125,7 +125,12 @@ fn the_eye_goes_to_a_view_and_a_view_comes_to_the_eye() {
     let mut state = opened(folder.path());
     run(&mut state, "views add a both 8x8");
     show(&mut state);
-    assert!(run(&mut state, "views go").0.starts_with("there is no window"), "{:?}", state.message);
+    assert!(
+        run(&mut state, "views go").0.starts_with("a is painted on, but there is no window"),
+        "{:?}",
+        state.message
+    );
+    assert!(run(&mut state, "views go nope").0.starts_with("there is no view \"nope\" (there are "));
     state.outside.window = "window".into();
     let looked = |effects: Vec<Effect>| {
         let camera = effects.into_iter().find_map(|effect| match effect {
@@ -188,6 +193,7 @@ fn points_go_on_the_sphere(state: &mut State) {
     // The sphere is small here: beside it, the place is on its edge.
     assert!(moved[1] > new[1] + 5.0 && moved[0] > 2.0, "{moved:?} {new:?}");
     press(state, "s");
+    assert_eq!(state.message.as_ref().unwrap().text, "blend point 0 stands here now");
     let blend = at(state, "/layers/0/surface/blend/points/0");
     assert_eq!(blend["target"], at(state, "/layers/0/surface/views/5/camera/target"));
     press(state, "u u u u");
