@@ -45,6 +45,30 @@ fn transport(replies: &Receiver<ToEditor>) -> Transport {
 }
 
 #[test]
+fn a_round_of_what_the_window_shows_is_captured_and_told() {
+    let Some(display) = Display::open() else { return };
+    let place = Place::new();
+    let (editor, _replies) = editor(&place);
+    let mut view = View::of(&display, &mut place.joining());
+    editor.view("zoom-one");
+    view.shows("frame 0", &place.frame(0));
+    editor.view("capture png");
+    view.until("the end of the capture", |_| editor.status().to_string().contains("captured as"));
+    let frames = place.scene().timeline.frames();
+    let path = |number: u64| place.folder.path().join(format!("blink-capture-1.{number:04}.png"));
+    assert!(path(frames - 1).exists() && !path(frames).exists(), "{frames}: {:?}", place.files());
+    for number in [0, 20] {
+        let taken = image::open(path(number)).unwrap().to_rgba8();
+        let (wanted, size) = (place.frame(number), (taken.width() as usize, taken.height() as usize));
+        let (left, top) = ((size.0 - wanted.width()) / 2, (size.1 - wanted.height()) / 2);
+        for (x, y) in [(100, 60), (240, 180), (250, 140)] {
+            let (shown, wanted) = (taken.get_pixel((left + x) as u32, (top + y) as u32), wanted.get(x, y));
+            assert!((0..3).all(|c| shown[c].abs_diff(wanted[c]) <= 2), "{number}, {x} {y}: {shown:?} {wanted:?}");
+        }
+    }
+}
+
+#[test]
 fn editor_and_window_share_time_point_and_view() {
     let Some(display) = Display::open() else { return };
     let place = Place::new();
