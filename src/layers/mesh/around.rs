@@ -57,7 +57,7 @@ pub fn around(synth: &Synth, t: f64, most_px: usize, watch: &Watch) -> Vec<Taken
         // Without decimals that do not matter at this distance.
         let decimals = number::decimals(position.distance(target), UNITS);
         let [position, target] = [position, target].map(|at| geometry::rounded(at, decimals));
-        let side_px = side(position.distance(target), cell).clamp(LEAST_SIDE.min(most_px), most_px);
+        let side_px = side(nearest(&own.mesh, [position, target]), cell).clamp(LEAST_SIDE.min(most_px), most_px);
         let size_px = (side_px, side_px);
         let world = |at| placed.point(at, DVec3::ZERO).0;
         let eye = Eye::new([world(position), world(target), placed.turn * up], FOV, size_px);
@@ -77,6 +77,12 @@ fn cell(mesh: &Mesh) -> f64 {
         (b - a).cross(c - a).length() / 2.0
     };
     (2.0 * mesh.triangles.iter().map(area).sum::<f64>()).sqrt() / CELLS
+}
+
+/// How far what is nearest of a mesh is, by how far one looks along the way to the target.
+fn nearest(mesh: &Mesh, [position, target]: [DVec3; 2]) -> f64 {
+    let forward = (target - position).normalize_or_zero();
+    mesh.vertices.iter().map(|vertex| (vertex.position - position).dot(forward)).fold(f64::INFINITY, f64::min)
 }
 
 /// How many pixels as large as a cell there are side by side in a picture at a distance: finer ones would be lost.
